@@ -1,0 +1,1 @@
+"""Bodies and cameras of robots, real and simulated."""

@@ -1,0 +1,1 @@
+"""Copying by camera: seeing, watching, segments, moves."""

@@ -1,0 +1,1 @@
+"""The shared library of the swarm runtime: messages, bus, clocks, learning, analysis."""

@@ -1,0 +1,1 @@
+"""Logs and results to tables, statistics, figures and reports."""

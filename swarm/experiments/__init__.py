@@ -1,0 +1,1 @@
+"""One file a study of the paper, and the paper's claims as data."""

@@ -1,0 +1,1 @@
+"""The grid worlds of section 2 and their compiled engine."""

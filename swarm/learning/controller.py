@@ -1,0 +1,130 @@
+"""The controller of algorithms 1, 2 and 3.
+
+Algorithm 1 is algorithm 2 with one path in the memory; algorithm 3 is algorithm 2 on a robot, where
+`learn` is called on arrival with eq. 7's discount. Plain Q-learning is an empty memory.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from swarm.geometry import MOVES
+from swarm.learning.memory import ImitationMemory, RememberedPath
+from swarm.learning.q_table import QTable
+from swarm.learning.random import Rng
+
+
+class Outcome(Enum):
+    """How the replay of a path ended."""
+
+    COMPLETED = "completed"
+    REJECTED = "rejected"
+    BLOCKED = "blocked"
+    GOAL = "goal"
+
+
+@dataclass
+class Replay:
+    """The imitation of one path from its start to its end."""
+
+    remembered: RememberedPath
+    index: int = 0
+    q_change: float = 0.0
+
+
+@dataclass(frozen=True)
+class EndedReplay:
+    """A replay that is over: which path, after how many executed moves, how, and what it changed."""
+
+    remembered: RememberedPath
+    moves: int
+    outcome: Outcome
+    q_change: float
+
+
+class Controller:
+    """Chooses actions and learns from them; ask `choose`, act, then tell `learn`."""
+
+    def __init__(self, q: QTable, memory: ImitationMemory, epsilon: float, rng: Rng) -> None:
+        self.q = q
+        self.memory = memory
+        self.epsilon = epsilon
+        self.rng = rng
+        self.replay: Replay | None = None
+        self.ended: EndedReplay | None = None
+        """The replay that the last call of `choose` or `learn` ended, if it ended one."""
+
+    def choose(self, state: int) -> int:
+        """The next action: of the path being replayed, of a path now started, or epsilon-greedy.
+
+        As the listings print it, a path's last action is executed without the Q check.
+        """
+        self.ended = None
+        if self.replay is None:
+            self.replay = self._started()
+            last = False
+        else:
+            self.replay.index += 1
+            last = self.replay.index == len(self.replay.remembered.path) - 1
+        if self.replay is None:
+            return self._epsilon_greedy(state)
+        action = self.replay.remembered.path.action(self.replay.index, state, self.rng)
+        if not last and self.q.has_better(state, action):
+            self._end(Outcome.REJECTED, executed=self.replay.index)
+            return self._epsilon_greedy(state)
+        return action
+
+    def learn(
+        self,
+        state: int,
+        action: int,
+        reward: float,
+        next_state: int,
+        discount: float,
+        *,
+        blocked: bool = False,
+        arrived: bool = False,
+    ) -> float:
+        """Update Q(s, a) by eq. 1 or 7 and return its change; end the replay where the path ends.
+
+        A replay ends with its last action, at a wall or obstacle (`blocked`), or in the goal
+        (`arrived`). The change of its last action counts towards the comparison of average Q values.
+        """
+        self.ended = None
+        change = self.q.update(state, action, reward, next_state, discount)
+        if self.replay is not None:
+            self.replay.q_change += change
+            outcome = self._outcome(self.replay, blocked=blocked, arrived=arrived)
+            if outcome is not None:
+                self._end(outcome, executed=self.replay.index + 1)
+        return change
+
+    def _started(self) -> Replay | None:
+        if not self.memory.remembered:
+            return None
+        chosen = self.memory.choose(self.rng)
+        return Replay(chosen) if self.memory.p_imitate(chosen) > self.rng.random() else None
+
+    def _epsilon_greedy(self, state: int) -> int:
+        if self.epsilon > self.rng.random():
+            return int(self.rng.integers(MOVES))
+        return self.q.greedy(state, self.rng)
+
+    @staticmethod
+    def _outcome(replay: Replay, *, blocked: bool, arrived: bool) -> Outcome | None:
+        if replay.index == len(replay.remembered.path) - 1:
+            return Outcome.COMPLETED
+        if arrived:
+            return Outcome.GOAL
+        return Outcome.BLOCKED if blocked else None
+
+    def _end(self, outcome: Outcome, executed: int) -> None:
+        """Count the replay into R_i; n_Q+ counts those whose Q updates sum to more than 0."""
+        assert self.replay is not None
+        remembered, q_change = self.replay.remembered, self.replay.q_change
+        remembered.n_replicated += 1
+        remembered.n_completed += outcome is Outcome.COMPLETED
+        remembered.n_q_plus += q_change > 0
+        self.ended = EndedReplay(remembered, executed, outcome, q_change)
+        self.replay = None

@@ -1,0 +1,1 @@
+"""Protobuf schemas, the generated module, plausibility checks."""

@@ -1,0 +1,1 @@
+"""Tracking systems, real and simulated."""
