@@ -1,0 +1,33 @@
+"""The verbs of the `swarm` command, as typer sees them."""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+
+from swarm.errors import UserError
+
+app = typer.Typer(
+    name="swarm",
+    help="Learning experiments on a swarm of robots: simulate, reproduce, analyze.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+@app.callback()
+def _root() -> None:
+    """Keeps the verbs as sub-commands while there is only one."""
+
+
+def run() -> None:
+    """Parse the command line and run the verb; a bad call becomes a UserError."""
+    try:
+        code = app(standalone_mode=False)
+    except typer.TyperException as error:
+        raise UserError(f"{' '.join(str(error).split())} (see `swarm --help`)") from error
+    except typer.Abort as error:
+        raise KeyboardInterrupt from error
+    sys.exit(code or 0)

@@ -1,0 +1,41 @@
+"""The `swarm` command: it only lists the verbs; each verb lives in the file of its name."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+
+from swarm.cli.output import require_extra
+from swarm.errors import RunFailedError, UserError
+
+
+def guarded(call: Callable[[], object]) -> int:
+    """Run a command; turn its errors into one line on stderr and an exit code, never a traceback."""
+    try:
+        call()
+    except UserError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except RunFailedError as error:
+        print(f"failed: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
+    return 0
+
+
+def _run() -> None:
+    require_extra("lab", "typer", "rich")
+    from swarm.cli.app import run
+
+    run()
+
+
+def main() -> None:
+    """Entry point of the `swarm` command."""
+    sys.exit(guarded(_run))
