@@ -15,7 +15,7 @@ class HeadingSettings:
     """How uncertain the heading, the wheels and the tracker are, as standard deviations."""
 
     tracker_sd_rad: float = 0.0175
-    slip_sd_rad_per_sqrt_m: float = 0.05
+    slip_sd_rad_per_sqrt_m: float = 0.03
     """Random-walk growth of the heading's error with the distance that the wheels roll."""
 
     scale_sd: float = 0.015
@@ -30,9 +30,10 @@ class HeadingFilter:
     """Covariance and gains of (heading, left scale, right scale); the state itself lives in the odometry."""
 
     def __init__(self, settings: HeadingSettings, track_m: float) -> None:
-        self._settings = settings
         self._track_m = track_m
         self._tracker_variance = settings.tracker_sd_rad**2
+        self._slip_variance_per_m = settings.slip_sd_rad_per_sqrt_m**2
+        self._scale_variance_per_m = settings.scale_drift_sd_per_sqrt_m**2
         self._smallest_variance = settings.smallest_sd_rad**2
         self._left = self._right = settings.scale_sd**2
         self._left_right = 0.0
@@ -50,12 +51,11 @@ class HeadingFilter:
         to_left = a * self._left + b * self._left_right
         to_right = a * self._left_right + b * self._right
         self._heading += 2.0 * (a * self._heading_left + b * self._heading_right) + a * to_left + b * to_right
-        self._heading += self._settings.slip_sd_rad_per_sqrt_m**2 * rolled_m
+        self._heading += self._slip_variance_per_m * rolled_m
         self._heading_left += to_left
         self._heading_right += to_right
-        drift = self._settings.scale_drift_sd_per_sqrt_m**2 * rolled_m
-        self._left += drift
-        self._right += drift
+        self._left += self._scale_variance_per_m * rolled_m
+        self._right += self._scale_variance_per_m * rolled_m
 
     def update(self, left_since_m: float, right_since_m: float) -> tuple[float, float, float]:
         """Take in a heading measured when the wheels had still to roll the given distances.

@@ -30,7 +30,7 @@ class Odometry:
     def __init__(self, geometry: EpuckGeometry, memory_s: float) -> None:
         self.left_scale = 1.0
         self.right_scale = 1.0
-        self._geometry = geometry
+        self._step_m, self._track_m = geometry.step_m, geometry.track_m
         self._memory_ns = round(memory_s * 1e9)
         self._steps: WheelSteps | None = None
         self._states: deque[Reckoned] = deque()
@@ -41,9 +41,8 @@ class Odometry:
             self._steps = steps
             self._states.append(Reckoned(t_ns, 0.0, 0.0, 0.0, 0.0, 0.0))
             return 0.0, 0.0
-        step_m = self._geometry.step_m
-        left_m = (steps.left - self._steps.left) * step_m * self.left_scale
-        right_m = (steps.right - self._steps.right) * step_m * self.right_scale
+        left_m = (steps.left - self._steps.left) * self._step_m * self.left_scale
+        right_m = (steps.right - self._steps.right) * self._step_m * self.right_scale
         self._steps = steps
         self._states.append(self._moved(left_m, right_m, t_ns))
         while self._states[0].t_ns < t_ns - self._memory_ns:
@@ -52,7 +51,7 @@ class Odometry:
 
     def _moved(self, left_m: float, right_m: float, t_ns: int) -> Reckoned:
         _, x_m, y_m, theta_rad, left_before_m, right_before_m = self._states[-1]
-        half_turn_rad = 0.5 * (right_m - left_m) / self._geometry.track_m
+        half_turn_rad = 0.5 * (right_m - left_m) / self._track_m
         chord_m = 0.5 * (left_m + right_m)
         if half_turn_rad:
             chord_m *= math.sin(half_turn_rad) / half_turn_rad
@@ -67,12 +66,14 @@ class Odometry:
         )
 
     @property
-    def newest(self) -> Reckoned | None:
-        """The state at the last reading; None before the first."""
-        return self._states[-1] if self._states else None
+    def newest(self) -> Reckoned:
+        """The state at the last reading. Raises IndexError before the first."""
+        return self._states[-1]
 
     def at(self, t_ns: int) -> Reckoned | None:
         """The state at a time, interpolated; the newest for a later time, None for one beyond the memory."""
+        if self._states and self._states[-1].t_ns <= t_ns:
+            return self._states[-1]
         after: Reckoned | None = None
         for state in reversed(self._states):
             if state.t_ns <= t_ns:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from robot_agent.drivers.body import WheelSteps
 from robot_agent.drivers.epuck import EpuckGeometry
@@ -37,6 +38,37 @@ class FusionSettings:
     largest_scale_error: float = 0.05
 
 
+class _Frame(NamedTuple):
+    """The arena pose of the frame in which the odometry runs."""
+
+    x_m: float
+    y_m: float
+    theta_rad: float
+    cos: float
+    sin: float
+
+    def place(self, state: Reckoned) -> tuple[float, float, float]:
+        """A dead-reckoned state in the arena: x_m, y_m, and theta_rad not wrapped."""
+        return (
+            self.x_m + self.cos * state.x_m - self.sin * state.y_m,
+            self.y_m + self.sin * state.x_m + self.cos * state.y_m,
+            self.theta_rad + state.theta_rad,
+        )
+
+
+def _frame_that_places(state: Reckoned, x_m: float, y_m: float, theta_rad: float) -> _Frame:
+    """The frame in which a dead-reckoned state lies at the given pose."""
+    frame_rad = theta_rad - state.theta_rad
+    cos, sin = math.cos(frame_rad), math.sin(frame_rad)
+    return _Frame(
+        x_m - cos * state.x_m + sin * state.y_m,
+        y_m - sin * state.x_m - cos * state.y_m,
+        frame_rad,
+        cos,
+        sin,
+    )
+
+
 class PoseEstimator:
     """Where the robot is, in the arena frame.
 
@@ -50,17 +82,20 @@ class PoseEstimator:
         self._settings = settings or FusionSettings()
         self._odometry = Odometry(geometry, self._settings.memory_s)
         self._heading = HeadingFilter(self._settings.heading, geometry.track_m)
+        self._tracker_variance = self._settings.tracker_sd_m**2
+        self._smallest_variance = self._settings.smallest_sd_m**2
+        self._drift_variance_per_m = self._settings.drift_sd_m_per_sqrt_m**2
         self._variance = 0.0
-        self._frame: Pose | None = None
+        self._frame: _Frame | None = None
         self._fixed_ns = 0
         self._heard_ns: int | None = None
-        self._far_frame: Pose | None = None
+        self._far_frame: _Frame | None = None
         self._far_fixes = 0
 
     def reset(self) -> None:
         """Forget the place (the wheels' learned sizes are kept); the next fix gives a new one."""
         self._frame = None
-        self._forget_far()
+        self._far_fixes = 0
         self.displaced = False
 
     def odometry(self, steps: WheelSteps, t_ns: int) -> None:
@@ -68,7 +103,7 @@ class PoseEstimator:
         left_m, right_m = self._odometry.advance(steps, t_ns)
         if left_m or right_m:
             self._heading.predict(left_m, right_m)
-            self._variance += self._settings.drift_sd_m_per_sqrt_m**2 * 0.5 * abs(left_m + right_m)
+            self._variance += self._drift_variance_per_m * 0.5 * abs(left_m + right_m)
 
     def fix(self, pose: Pose, t_ns: int) -> None:
         """Take in the pose that the tracker measured at `t_ns`.
@@ -82,10 +117,12 @@ class PoseEstimator:
         self._heard_ns = t_ns
         if self._frame is None:
             self._start(pose, then)
-        elif self._is_near(pose, self._frame, then, self._settings.far_m, self._settings.far_rad):
-            self._correct(pose, then)
-        else:
+            return
+        surprise = _surprise(pose, self._frame, then)
+        if self._is_far(surprise):
             self._doubt(pose, then)
+        else:
+            self._correct(pose, then, surprise)
 
     def pose(self, t_ns: int) -> Pose | None:
         """The estimate at a time within the memory (a camera frame's, say); None before the first fix.
@@ -95,85 +132,68 @@ class PoseEstimator:
         state = self._odometry.at(t_ns)
         if self._frame is None or state is None:
             return None
-        return _placed(self._frame, state)
+        x_m, y_m, theta_rad = self._frame.place(state)
+        return Pose(x_m, y_m, wrap_angle_rad(theta_rad))
 
     def age_s(self, t_ns: int) -> float:
         """How long ago the last believed fix was measured; infinite without one."""
         return math.inf if self._frame is None else (t_ns - self._fixed_ns) * 1e-9
 
     def _start(self, pose: Pose, then: Reckoned) -> None:
-        self._frame = _frame_of(pose, then)
+        self._frame = _frame_that_places(then, pose.x_m, pose.y_m, pose.theta_rad)
         self._fixed_ns = then.t_ns
-        self._variance = self._settings.tracker_sd_m**2
+        self._variance = self._tracker_variance
         self._heading.restart()
-        self._forget_far()
+        self._far_fixes = 0
 
-    def _correct(self, pose: Pose, then: Reckoned) -> None:
+    def _correct(self, pose: Pose, then: Reckoned, surprise: Surprise) -> None:
+        dx_m, dy_m, turned_rad = surprise
         now = self._odometry.newest
-        assert self._frame is not None
-        assert now is not None
-        expected = _placed(self._frame, then)
-        surprise_rad = wrap_angle_rad(pose.theta_rad - expected.theta_rad)
-        gains = self._heading.update(now.left_m - then.left_m, now.right_m - then.right_m)
-        self._scale_wheels(gains[1] * surprise_rad, gains[2] * surprise_rad)
-        gain = self._position_gain()
-        corrected = Pose(
-            expected.x_m + gain * (pose.x_m - expected.x_m),
-            expected.y_m + gain * (pose.y_m - expected.y_m),
-            expected.theta_rad + gains[0] * surprise_rad,
-        )
-        self._frame = _frame_of(corrected, then)
+        heading, left, right = self._heading.update(now.left_m - then.left_m, now.right_m - then.right_m)
+        self._scale_wheels(left * turned_rad, right * turned_rad)
+        kept = 1.0 - self._position_gain()
+        x_m, y_m = pose.x_m - kept * dx_m, pose.y_m - kept * dy_m
+        theta_rad = pose.theta_rad - (1.0 - heading) * turned_rad
+        self._frame = _frame_that_places(then, x_m, y_m, theta_rad)
         self._fixed_ns = then.t_ns
-        self._forget_far()
+        self._far_fixes = 0
 
     def _position_gain(self) -> float:
-        self._variance = max(self._variance, self._settings.smallest_sd_m**2)
-        gain = self._variance / (self._variance + self._settings.tracker_sd_m**2)
-        self._variance *= 1.0 - gain
+        variance = max(self._variance, self._smallest_variance)
+        gain = variance / (variance + self._tracker_variance)
+        self._variance = (1.0 - gain) * variance
         return gain
 
     def _scale_wheels(self, left: float, right: float) -> None:
-        low, high = 1.0 - self._settings.largest_scale_error, 1.0 + self._settings.largest_scale_error
-        odometry = self._odometry
-        odometry.left_scale = min(max(odometry.left_scale + left, low), high)
-        odometry.right_scale = min(max(odometry.right_scale + right, low), high)
+        error, odometry = self._settings.largest_scale_error, self._odometry
+        odometry.left_scale = min(max(odometry.left_scale + left, 1.0 - error), 1.0 + error)
+        odometry.right_scale = min(max(odometry.right_scale + right, 1.0 - error), 1.0 + error)
+
+    def _is_far(self, surprise: Surprise) -> bool:
+        dx_m, dy_m, turned_rad = surprise
+        return math.hypot(dx_m, dy_m) > self._settings.far_m or abs(turned_rad) > self._settings.far_rad
 
     def _doubt(self, pose: Pose, then: Reckoned) -> None:
         """A fix far from the estimate: an outlier, unless others agree with it."""
-        settings, before = self._settings, self._far_frame
-        agrees = before and self._is_near(pose, before, then, settings.agree_m, settings.agree_rad)
+        agrees = self._far_fixes > 0 and self._agrees_with_far(pose, then)
         self._far_fixes = self._far_fixes + 1 if agrees else 1
-        self._far_frame = _frame_of(pose, then)
-        if self._far_fixes >= settings.fixes_to_believe:
+        self._far_frame = _frame_that_places(then, pose.x_m, pose.y_m, pose.theta_rad)
+        if self._far_fixes >= self._settings.fixes_to_believe:
             self._start(pose, then)
             self.displaced = True
 
-    def _forget_far(self) -> None:
-        self._far_frame, self._far_fixes = None, 0
-
-    @staticmethod
-    def _is_near(pose: Pose, frame: Pose, then: Reckoned, limit_m: float, limit_rad: float) -> bool:
-        expected = _placed(frame, then)
-        turned_rad = abs(wrap_angle_rad(pose.theta_rad - expected.theta_rad))
-        return turned_rad <= limit_rad and pose.distance_m(expected) <= limit_m
+    def _agrees_with_far(self, pose: Pose, then: Reckoned) -> bool:
+        assert self._far_frame is not None
+        dx_m, dy_m, turned_rad = _surprise(pose, self._far_frame, then)
+        return (
+            math.hypot(dx_m, dy_m) <= self._settings.agree_m and abs(turned_rad) <= self._settings.agree_rad
+        )
 
 
-def _placed(frame: Pose, state: Reckoned) -> Pose:
-    """A dead-reckoned state in the arena, when `frame` is the arena pose of the odometry's frame."""
-    cos, sin = math.cos(frame.theta_rad), math.sin(frame.theta_rad)
-    return Pose(
-        frame.x_m + cos * state.x_m - sin * state.y_m,
-        frame.y_m + sin * state.x_m + cos * state.y_m,
-        wrap_angle_rad(frame.theta_rad + state.theta_rad),
-    )
+Surprise = tuple[float, float, float]
+"""By how much a fix exceeds what was expected: dx_m, dy_m, and the angle in radians."""
 
 
-def _frame_of(pose: Pose, state: Reckoned) -> Pose:
-    """The arena pose of the odometry's frame that places a state at a pose."""
-    theta_rad = pose.theta_rad - state.theta_rad
-    cos, sin = math.cos(theta_rad), math.sin(theta_rad)
-    return Pose(
-        pose.x_m - cos * state.x_m + sin * state.y_m,
-        pose.y_m - sin * state.x_m - cos * state.y_m,
-        theta_rad,
-    )
+def _surprise(pose: Pose, frame: _Frame, then: Reckoned) -> Surprise:
+    x_m, y_m, theta_rad = frame.place(then)
+    return pose.x_m - x_m, pose.y_m - y_m, wrap_angle_rad(pose.theta_rad - theta_rad)

@@ -16,13 +16,14 @@ SLIP_SLOT_NS = 100_000_000
 """Each wheel's slip is drawn anew in every slot of this length in which the wheels turn."""
 
 _SLIPS_DRAWN_AT_ONCE = 256
+_NEVER_NS = 1 << 63
 
 
 @dataclass(frozen=True, slots=True)
 class BodyFaults:
     """How far a robot's ground motion strays from its wheels' steps, and how late it obeys."""
 
-    slip_sd: float = 0.02
+    slip_sd: float = 0.01
     """Standard deviation of each wheel's relative slip in a slot of 0.1 s."""
 
     gain_error_sd: float = 0.015
@@ -53,6 +54,7 @@ class SimulatedBody:
         self.contacts = 0
         """How often the body has run into a wall, up to the last full slot."""
         self._geometry = geometry
+        self._track_m = geometry.track_m
         self._rng = rng
         left_error, right_error = rng.normal(0.0, faults.gain_error_sd, 2).tolist()
         self._left_step_m = geometry.step_m * (1.0 + left_error)
@@ -65,8 +67,9 @@ class SimulatedBody:
         self._x_m, self._y_m, self._theta_rad = pose.x_m, pose.y_m, pose.theta_rad
         self._confined = self._inside(pose)
         self._touching = False
-        self._t_ns: int | None = None
-        self._latest_ns = 0
+        self._started = self._rolling = False
+        self._t_ns = self._latest_ns = 0
+        self._next_ns = _NEVER_NS
         self._left_steps = self._right_steps = 0.0
         self._left_speed = self._right_speed = 0.0
         self._commands: deque[tuple[int, float, float]] = deque()
@@ -79,6 +82,7 @@ class SimulatedBody:
         sent = self._geometry.sendable(speeds)
         self._advance(t_ns)
         self._commands.append((t_ns + self._latency_ns, sent.left_steps_per_s, sent.right_steps_per_s))
+        self._next_ns = min(self._next_ns, t_ns + self._latency_ns)
         return sent
 
     def wheel_steps(self, t_ns: int) -> WheelSteps:
@@ -89,12 +93,13 @@ class SimulatedBody:
 
     def close(self) -> None:
         self._commands.clear()
+        self._obey()
         self.drive(STOPPED, self._latest_ns)
 
     def truth(self, t_ns: int) -> Pose:
         """Where the robot really is."""
         ahead_s = self._advance(t_ns)
-        if ahead_s == 0.0 or not (self._left_speed or self._right_speed):
+        if not (ahead_s and self._rolling):
             return Pose(self._x_m, self._y_m, wrap_angle_rad(self._theta_rad))
         x_m, y_m, theta_rad = self._arc(ahead_s)
         if self._confined:
@@ -103,54 +108,56 @@ class SimulatedBody:
 
     def place(self, pose: Pose) -> None:
         """Put the robot somewhere by hand, at the time of the last call; its wheels go on as they were."""
-        if self._t_ns is not None:
-            self._move((self._latest_ns - self._t_ns) * 1e-9)
-            self._t_ns = self._latest_ns
+        self._move_to(self._latest_ns)
         self._x_m, self._y_m, self._theta_rad = pose.x_m, pose.y_m, pose.theta_rad
         self._confined = self._inside(pose)
         self._touching = False
 
     def _advance(self, t_ns: int) -> float:
         """Bring the state to the last fixed instant up to `t_ns`; return the seconds left from there."""
-        if self._t_ns is None:
-            self._t_ns = t_ns
-        elif t_ns < self._latest_ns:
+        if t_ns < self._latest_ns:
             raise ValueError(f"time went back from {self._latest_ns} ns to {t_ns} ns: ask in order of time")
+        if not self._started:
+            self._started = True
+            self._t_ns = t_ns
         self._latest_ns = t_ns
-        while (next_ns := self._next_instant_ns(t_ns)) <= t_ns:
-            self._move((next_ns - self._t_ns) * 1e-9)
-            self._t_ns = next_ns
-            while self._commands and self._commands[0][0] <= next_ns:
-                _, self._left_speed, self._right_speed = self._commands.popleft()
+        while self._next_ns <= t_ns:
+            self._move_to(self._next_ns)
+            self._obey()
         return (t_ns - self._t_ns) * 1e-9
 
-    def _next_instant_ns(self, t_ns: int) -> int:
-        """When the state next moves on: at a command's effect, or at the end of a slot if wheels turn."""
-        assert self._t_ns is not None
-        next_ns = self._commands[0][0] if self._commands else t_ns + 1
-        if self._left_speed or self._right_speed:
+    def _obey(self) -> None:
+        """Take over the commands that are due, and find the next fixed instant."""
+        commands = self._commands
+        while commands and commands[0][0] <= self._t_ns:
+            _, self._left_speed, self._right_speed = commands.popleft()
+            self._rolling = self._left_speed != 0.0 or self._right_speed != 0.0
+        self._next_ns = commands[0][0] if commands else _NEVER_NS
+        if self._rolling:
             slot_end_ns = (self._t_ns // SLIP_SLOT_NS + 1) * SLIP_SLOT_NS
-            return min(next_ns, slot_end_ns)
-        return next_ns
+            self._next_ns = min(self._next_ns, slot_end_ns)
 
-    def _move(self, duration_s: float) -> None:
-        if duration_s == 0.0 or not (self._left_speed or self._right_speed):
-            return
-        self._x_m, self._y_m, self._theta_rad = x_m, y_m, _ = self._arc(duration_s)
-        self._left_steps += self._left_speed * duration_s
-        self._right_steps += self._right_speed * duration_s
-        if self._confined:
-            self._x_m, self._y_m = self._clamped(x_m, y_m)
+    def _move_to(self, t_ns: int) -> None:
+        duration_s = (t_ns - self._t_ns) * 1e-9
+        if self._rolling and duration_s:
+            x_m, y_m, self._theta_rad = self._arc(duration_s)
+            self._left_steps += self._left_speed * duration_s
+            self._right_steps += self._right_speed * duration_s
+            self._x_m, self._y_m = self._clamped(x_m, y_m) if self._confined else (x_m, y_m)
             touching = self._x_m != x_m or self._y_m != y_m
             self.contacts += touching and not self._touching
             self._touching = touching
+        self._t_ns = t_ns
 
     def _arc(self, duration_s: float) -> tuple[float, float, float]:
         """The pose after driving on within the present slot; the chord of the arc is exact."""
-        self._grip_in_slot()
+        slot = self._t_ns // SLIP_SLOT_NS
+        if slot != self._slip_slot:
+            self._slip_slot = slot
+            self._draw_slips()
         left_m = self._left_speed * self._left_step_m * self._left_grip * duration_s
         right_m = self._right_speed * self._right_step_m * self._right_grip * duration_s
-        half_turn_rad = 0.5 * (right_m - left_m) / self._geometry.track_m
+        half_turn_rad = 0.5 * (right_m - left_m) / self._track_m
         chord_m = 0.5 * (left_m + right_m)
         if half_turn_rad:
             chord_m *= math.sin(half_turn_rad) / half_turn_rad
@@ -161,15 +168,9 @@ class SimulatedBody:
             heading_rad + half_turn_rad,
         )
 
-    def _grip_in_slot(self) -> None:
-        """Draw the wheels' slip at the first motion in a slot."""
-        assert self._t_ns is not None
-        slot = self._t_ns // SLIP_SLOT_NS
-        if slot == self._slip_slot:
-            return
+    def _draw_slips(self) -> None:
         if not self._slips:
             self._slips = self._rng.normal(1.0, self._slip_sd, _SLIPS_DRAWN_AT_ONCE).tolist()
-        self._slip_slot = slot
         self._left_grip, self._right_grip = self._slips.pop(), self._slips.pop()
 
     def _inside(self, pose: Pose) -> bool:
