@@ -24,3 +24,6 @@ test-all: setup check
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info
+
+messages: setup
+	$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --mypy_out=. swarm/messages/swarm.proto

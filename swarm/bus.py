@@ -1,0 +1,211 @@
+"""The only file that imports zenoh: a hub and clients with explicit endpoints, and no logic in callbacks."""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from swarm.errors import UserError
+from swarm.keys import Delivery
+
+if TYPE_CHECKING:
+    import zenoh
+
+ONE_THREAD = (
+    "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
+)
+QUEUE_DEPTH = 65_536
+
+
+@dataclass(frozen=True)
+class BusSettings:
+    """How a process reaches the others.
+
+    The hub listens on `endpoint` (tcp/HOST:PORT) and routes; clients connect to it and keep trying.
+    `low_latency` has the sender's own thread write to the socket: less waiting, but no priorities and no
+    payload above 48 kB (lost without an error), so it is for the lockstep's frames alone.
+    `config` is a Zenoh configuration file (JSON5) whose values come first, for TLS and access control.
+    """
+
+    endpoint: str
+    hub: bool = False
+    lease_s: float = 1.5
+    wait_for_hub: bool = True
+    low_latency: bool = False
+    config: Path | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """What arrived: key, payload, and the bytes beside it."""
+
+    key: str
+    payload: bytes
+    attachment: bytes
+
+
+class Inbox:
+    """Samples of one subscription, polled by the main loop."""
+
+    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
+        self._subscriber = subscriber
+
+    def poll(self) -> list[Sample]:
+        """Everything that has arrived since the last call."""
+        samples = []
+        while (sample := self._subscriber.try_recv()) is not None:
+            samples.append(_sample(sample))
+        return samples
+
+    def wait(self) -> Sample:
+        """The next sample; blocks. An inbox made with `wake_s` gets an empty payload that often."""
+        return _sample(self._subscriber.recv())
+
+
+class Sender:
+    """Puts payloads under one key."""
+
+    def __init__(self, publisher: zenoh.Publisher) -> None:
+        self._publisher = publisher
+
+    def put(self, payload: bytes, attachment: bytes | None = None) -> None:
+        self._publisher.put(payload, attachment=attachment)
+
+
+class Bus:
+    """A Zenoh session. Use it as a context manager: a session that is not closed hangs at exit."""
+
+    def __init__(self, settings: BusSettings) -> None:
+        os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
+        import zenoh
+
+        zenoh.init_log_from_env_or("error")
+        self._zenoh = zenoh
+        self._stop_waking = threading.Event()
+        self._wakers: list[threading.Thread] = []
+        self._tokens: list[zenoh.LivelinessToken] = []
+        try:
+            self._session = zenoh.open(_config(settings))
+        except zenoh.ZError as error:
+            raise UserError(_why_not_open(settings, str(error))) from error
+
+    def __enter__(self) -> Bus:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Undeclare everything and leave; presence tokens vanish for the others."""
+        self._stop_waking.set()
+        for waker in self._wakers:
+            waker.join()
+        if not self._session.is_closed():
+            self._session.close()  # type: ignore[no-untyped-call]
+
+    def sender(self, key: str, delivery: Delivery) -> Sender:
+        """A publisher with the delivery's guarantees."""
+        control = self._zenoh.CongestionControl
+        priority = self._zenoh.Priority
+        return Sender(
+            self._session.declare_publisher(
+                key,
+                congestion_control=control.BLOCK if delivery is Delivery.EVERY else control.DROP,
+                priority=priority.DATA_LOW if delivery is Delivery.BULK else priority.DATA,
+            )
+        )
+
+    def inbox(
+        self, key: str, delivery: Delivery, wake_s: float | None = None, *, keep_all: bool = False
+    ) -> Inbox:
+        """Subscribe to a key expression.
+
+        `wake_s` lets `Inbox.wait` return that often with nothing. Of a `NEWEST` delivery one sample is
+        kept, unless `keep_all` says that the expression holds many keys.
+        """
+        handlers = self._zenoh.handlers
+        newest_only = delivery is Delivery.NEWEST and not keep_all
+        channel = handlers.RingChannel(1) if newest_only else handlers.FifoChannel(QUEUE_DEPTH)
+        inbox = Inbox(self._session.declare_subscriber(key, channel))
+        if wake_s is not None:
+            self._start_waker(key, wake_s)
+        return inbox
+
+    def declare_alive(self, key: str) -> None:
+        """Show presence under a key for as long as this session lives."""
+        self._tokens.append(self._session.liveliness().declare_token(key))
+
+    def alive(self, key: str) -> list[str]:
+        """The presence keys that match a key expression now."""
+        replies = self._session.liveliness().get(key)
+        return sorted({str(reply.ok.key_expr) for reply in replies if reply.ok is not None})
+
+    @property
+    def endpoint_count(self) -> int:
+        """Transports to other processes that are up now."""
+        info = self._session.info
+        return len(info.routers_zid()) + len(info.peers_zid())
+
+    def _start_waker(self, key: str, wake_s: float) -> None:
+        """Zenoh's recv has no time-out: an empty sample to ourselves ends the wait instead."""
+        publisher = self._session.declare_publisher(
+            key, allowed_destination=self._zenoh.Locality.SESSION_LOCAL
+        )
+
+        def wake() -> None:
+            while not self._stop_waking.wait(wake_s):
+                publisher.put(b"")
+
+        thread = threading.Thread(target=wake, name=f"wake {key}", daemon=True)
+        self._wakers.append(thread)
+        thread.start()
+
+
+def _sample(sample: zenoh.Sample) -> Sample:
+    attachment = sample.attachment
+    return Sample(
+        str(sample.key_expr), bytes(sample.payload), bytes(attachment) if attachment is not None else b""
+    )
+
+
+def _config(settings: BusSettings) -> zenoh.Config:
+    """Scouting, gossip and shared memory off: explicit endpoints only, and nothing lost in /dev/shm."""
+    import zenoh
+
+    config = zenoh.Config.from_file(str(settings.config)) if settings.config else zenoh.Config()
+    values: dict[str, object] = {
+        "mode": "router" if settings.hub else "client",
+        "listen/endpoints": [settings.endpoint] if settings.hub else [],
+        "connect/endpoints": [] if settings.hub else [settings.endpoint],
+        "connect/timeout_ms": -1 if settings.wait_for_hub and not settings.hub else 0,
+        "connect/exit_on_failure": not settings.wait_for_hub,
+        "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2},
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "transport/shared_memory/enabled": False,
+        "timestamping/enabled": True,
+        "transport/link/tx/lease": round(settings.lease_s * 1000),
+        "transport/unicast/qos/enabled": not settings.low_latency,
+        "transport/unicast/lowlatency": settings.low_latency,
+    }
+    for key, value in values.items():
+        config.insert_json5(key, json.dumps(value))
+    return config
+
+
+def _why_not_open(settings: BusSettings, error: str) -> str:
+    reason = " ".join(error.split())[:120]
+    if settings.hub:
+        cure = "is another server running there, or is the address not this machine's?"
+        return f"cannot listen on {settings.endpoint}: {cure} ({reason})"
+    return f"cannot reach the server at {settings.endpoint}: is it running? ({reason})"

@@ -1,0 +1,75 @@
+"""What a process receives of one topic: decoded, checked, without duplicates, and counted when bad."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from google.protobuf.message import Message
+
+from swarm.keys import Delivery, Topic, topic_of
+from swarm.messages.checks import BadMessageError, decode
+from swarm.messages.header import Header
+
+M = TypeVar("M", bound=Message)
+
+
+@dataclass(frozen=True, slots=True)
+class Received(Generic[M]):
+    """A checked message, the robot that its key names, and its header."""
+
+    robot: str
+    header: Header
+    message: M
+
+
+class Feed(Generic[M]):
+    """The messages of one topic that arrived since the last `take`.
+
+    Of a `NEWEST` topic only the last of each key is kept. A message that repeats or comes before one
+    already seen from the same epoch is a duplicate; one from an older epoch is of a dead process.
+    """
+
+    def __init__(self, topic: Topic[M]) -> None:
+        self.topic = topic
+        self._waiting: list[tuple[str, Header, bytes]] = []
+        self._seen: dict[str, tuple[int, int]] = {}
+        self.duplicates = 0
+        self.bad = 0
+        self.last_bad = ""
+        """Why the last bad message was refused, with its key."""
+
+    def put(self, key: str, header: Header | None, payload: bytes) -> None:
+        """Take in what the link received; nothing is decoded yet."""
+        if header is None:
+            self._refuse(key, "it has no header")
+            return
+        number = (header.epoch, header.sequence)
+        if number <= self._seen.get(key, (0, 0)):
+            self.duplicates += 1
+            return
+        self._seen[key] = number
+        if self.topic.delivery is Delivery.NEWEST:
+            self._waiting = [waiting for waiting in self._waiting if waiting[0] != key]
+        self._waiting.append((key, header, payload))
+
+    def take(self) -> list[Received[M]]:
+        """Everything that waits, in order of arrival."""
+        waiting, self._waiting = self._waiting, []
+        checked = (self._checked(*message) for message in waiting)
+        return [received for received in checked if received is not None]
+
+    def _checked(self, key: str, header: Header, payload: bytes) -> Received[M] | None:
+        found = topic_of(key)
+        if found is None:
+            self._refuse(key, "its key is not in the key table")
+            return None
+        try:
+            return Received(found[1], header, decode(self.topic.message, payload))
+        except BadMessageError as error:
+            self._refuse(key, str(error))
+            return None
+
+    def _refuse(self, key: str, reason: str) -> None:
+        self.bad += 1
+        self.last_bad = f"{key[:80]!r}: {reason}"

@@ -1,0 +1,112 @@
+"""One table of everything on the wire: readers, recorder, health and the documentation use it.
+
+A robot's name stands in its keys and nowhere else, so a message cannot claim another sender. A robot
+receives its own pose, its own orders and the run's state (`to_robot`): the paper's rule that nothing
+but what the camera sees crosses from one robot to another can be read off this table.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+from functools import lru_cache
+from typing import Any, Generic, TypeVar
+
+from google.protobuf.message import Message
+
+from swarm.messages import swarm_pb2 as pb
+
+M = TypeVar("M", bound=Message)
+
+ID_PATTERN = re.compile(r"[a-z][a-z0-9_-]{0,31}")
+
+
+class Delivery(Enum):
+    """What may be lost when the link is slow."""
+
+    EVERY = "every"
+    """Reliable, the sender waits: learning events and orders."""
+    NEWEST = "newest"
+    """Reliable while there is room, only the newest counts: poses, commands, states."""
+    BULK = "bulk"
+    """Dropped first: images."""
+
+
+@dataclass(frozen=True)
+class Topic(Generic[M]):
+    """One line of the key table. `{robot}` in the pattern stands for a robot's id."""
+
+    pattern: str
+    message: type[M]
+    meaning: str
+    rate_hz: float | None
+    delivery: Delivery
+    logged: bool
+    to_robot: bool = False
+
+    def key(self, robot: str = "*") -> str:
+        """The key of one robot, or with "*" the expression for all of them."""
+        return self.pattern.format(robot=robot)
+
+
+POSE = Topic(
+    "robot/{robot}/pose", pb.Pose, "its place, from the tracker", 10.0, Delivery.NEWEST, True, to_robot=True
+)
+ORDER = Topic(
+    "robot/{robot}/order", pb.Order, "what the conductor wants", None, Delivery.EVERY, True, to_robot=True
+)
+RUN_STATE = Topic("run/state", pb.RunState, "phase and trial", 1.0, Delivery.NEWEST, True, to_robot=True)
+COMMAND = Topic(
+    "robot/{robot}/command", pb.Command, "wheel speeds as sent, pose believed", 10.0, Delivery.NEWEST, True
+)
+MOVE = Topic("robot/{robot}/move", pb.Move, "one transition learnt", None, Delivery.EVERY, True)
+BEST_PATH = Topic("robot/{robot}/best_path", pb.BestPath, "every ten moves", None, Delivery.EVERY, True)
+PATH = Topic("robot/{robot}/path", pb.PathRemembered, "a path entered the memory", None, Delivery.EVERY, True)
+REPLAY = Topic("robot/{robot}/replay", pb.Replay, "a replay ended", None, Delivery.EVERY, True)
+STATUS = Topic("robot/{robot}/status", pb.Status, "activity and health", 1.0, Delivery.NEWEST, True)
+EVENT = Topic("robot/{robot}/event", pb.Event, "what a person should know", None, Delivery.EVERY, True)
+TRACKER_EVENT = Topic("tracker/event", pb.Event, "rejected poses, lost robots", None, Delivery.EVERY, True)
+SERVER_EVENT = Topic("server/event", pb.Event, "what the conductor did", None, Delivery.EVERY, True)
+TRUTH = Topic("sim/{robot}/truth", pb.Truth, "simulation: where it really is", 10.0, Delivery.NEWEST, True)
+CARRY = Topic("sim/{robot}/carry", pb.Carry, "simulation: moved by hand", None, Delivery.EVERY, True)
+
+TABLE: tuple[Topic[Any], ...] = (
+    POSE,
+    ORDER,
+    RUN_STATE,
+    COMMAND,
+    MOVE,
+    BEST_PATH,
+    PATH,
+    REPLAY,
+    STATUS,
+    EVENT,
+    TRACKER_EVENT,
+    SERVER_EVENT,
+    TRUTH,
+    CARRY,
+)
+
+LOCKSTEP_TICK = "lockstep/tick/{process}"
+LOCKSTEP_DONE = "lockstep/done"
+ALIVE = "alive/{kind}/{name}/{host}/{epoch}"
+"""Presence (liveliness tokens): kind is robot, tracker, server or process."""
+
+
+def is_id(name: str) -> bool:
+    """Whether a name may be a robot's, process's or run's id."""
+    return ID_PATTERN.fullmatch(name) is not None
+
+
+@lru_cache(maxsize=65_536)
+def topic_of(key: str) -> tuple[Topic[Any], str] | None:
+    """The line of the table that a key belongs to and the robot it names ("" for none)."""
+    for topic in TABLE:
+        before, _, after = topic.pattern.partition("{robot}")
+        if topic.pattern == key:
+            return topic, ""
+        robot = key[len(before) : len(key) - len(after)]
+        if "{robot}" in topic.pattern and before + robot + after == key and is_id(robot):
+            return topic, robot
+    return None

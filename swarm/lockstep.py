@@ -1,0 +1,138 @@
+"""Lockstep virtual time, the side of the processes: time is a message from the hub."""
+
+from __future__ import annotations
+
+import os
+import socket
+from collections.abc import Iterator
+from typing import Any, TypeVar
+
+from google.protobuf.message import DecodeError, Message
+
+from swarm.bus import Bus
+from swarm.errors import RunFailedError
+from swarm.feed import Feed
+from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
+from swarm.link import Sequencer
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages.header import Header
+
+M = TypeVar("M", bound=Message)
+
+FRAME_BYTES = 32_000
+WAKE_S = 0.25
+WAKES_WITHOUT_HUB = 8
+EPOCH = 1
+"""A process of a lockstep run is started once, so its epoch is the same in every repetition."""
+
+
+class LockstepLink:
+    """Steps when the hub says so, and sends everything it published in one message a tick.
+
+    Ticks are numbered and idempotent: a repeated tick gets the same answer again.
+    """
+
+    def __init__(self, bus: Bus, process: str) -> None:
+        self._bus = bus
+        self._process = process
+        self._ticks = bus.inbox(LOCKSTEP_TICK.format(process=process), Delivery.EVERY, wake_s=WAKE_S)
+        self._done = bus.sender(LOCKSTEP_DONE, Delivery.EVERY)
+        self._feeds: dict[str, Feed[Any]] = {}
+        self._routes: dict[str, tuple[Feed[Any], ...]] = {}
+        self._sequencer = Sequencer()
+        self._items: list[pb.Item] = []
+        self._answer: list[bytes] = []
+        self._number = 0
+        self.keys_received: set[str] = set()
+        """Every key of which this process received a message."""
+
+    def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
+        feed = Feed(topic)
+        self._feeds[topic.key(robot)] = feed
+        return feed
+
+    def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
+        key = topic.key(robot)
+        number = self._sequencer.following(key)
+        self._items.append(
+            pb.Item(key=key, epoch=EPOCH, sequence=number, payload=message.SerializeToString())
+        )
+
+    def ticks(self) -> Iterator[int]:
+        while not (tick := self._next_tick()).end:
+            for item in tick.items:
+                self._deliver(item, tick.t_ns)
+            yield tick.t_ns
+            self._number = tick.number
+            self._answer = self._frames(tick.number)
+            self._send_answer()
+
+    def _next_tick(self) -> pb.Tick:
+        silent_wakes = 0
+        while True:
+            payload = self._ticks.wait().payload
+            if payload:
+                tick = pb.Tick.FromString(payload)
+                if tick.number > self._number or tick.end:
+                    return tick
+                self._send_answer()
+                continue
+            silent_wakes = 0 if self._hub_is_alive() else silent_wakes + 1
+            if silent_wakes >= WAKES_WITHOUT_HUB:
+                raise RunFailedError(f"{self._process}: the server is gone, so the simulation cannot go on")
+            if self._number == 0:
+                self._greet()
+
+    def _hub_is_alive(self) -> bool:
+        return bool(self._bus.alive("alive/server/**"))
+
+    def _greet(self) -> None:
+        """HELLO, repeated until the first tick: a message sent right after declaring may be lost."""
+        hello = pb.Hello(
+            process=self._process,
+            pid=os.getpid(),
+            host=socket.gethostname(),
+            subscriptions=list(self._feeds),
+        )
+        self._done.put(pb.Done(process=self._process, hello=hello).SerializeToString())
+
+    def _deliver(self, item: pb.Item, t_ns: int) -> None:
+        self.keys_received.add(item.key)
+        feeds = self._routes.get(item.key)
+        if feeds is None:
+            feeds = tuple(feed for key, feed in self._feeds.items() if key_matches(key, item.key))
+            self._routes[item.key] = feeds
+        for feed in feeds:
+            feed.put(item.key, Header(item.epoch, item.sequence, t_ns), item.payload)
+
+    def _frames(self, number: int) -> list[bytes]:
+        """The tick's items in frames small enough for a low-latency transport."""
+        done, size = pb.Done(process=self._process, number=number), 0
+        frames = []
+        for item in self._items:
+            if size + len(item.payload) > FRAME_BYTES and size:
+                done.more = True
+                frames.append(done.SerializeToString())
+                done, size = pb.Done(process=self._process, number=number), 0
+            done.items.append(item)
+            size += len(item.payload) + len(item.key) + 16
+        self._items = []
+        return [*frames, done.SerializeToString()]
+
+    def _send_answer(self) -> None:
+        for frame in self._answer:
+            self._done.put(frame)
+
+
+def key_matches(expression: str, key: str) -> bool:
+    """Whether a key lies in an expression in which `*` stands for one part."""
+    wanted, parts = expression.split("/"), key.split("/")
+    return len(wanted) == len(parts) and all(a in ("*", b) for a, b in zip(wanted, parts, strict=True))
+
+
+def parse_done(payload: bytes) -> pb.Done | None:
+    """A process's answer, or None if the bytes are none."""
+    try:
+        return pb.Done.FromString(payload)
+    except DecodeError:
+        return None
