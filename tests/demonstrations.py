@@ -1,4 +1,4 @@
-"""Abstract demonstrations: what an observer in the corner would report of a robot that drives a list of moves.
+"""Abstract demonstrations: what an observer in the corner would report of a robot that drives its moves.
 
 No frame is rendered: range and bearing get noise of the size and the shape that rendered frames
 show. Range noise is k d^2; half of its variance is a function of the place (a pixel's phase), so

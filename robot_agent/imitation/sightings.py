@@ -39,7 +39,9 @@ class Sightings:
 
     def positions(self) -> tuple[ObservedPosition, ...]:
         rows = zip(self.t_ns.tolist(), self.xy_m.tolist(), self.covariance_m2.tolist(), strict=True)
-        return tuple(ObservedPosition(t, x, y, ((xx, xy), (yx, yy))) for t, (x, y), ((xx, xy), (yx, yy)) in rows)
+        return tuple(
+            ObservedPosition(t, x, y, ((xx, xy), (yx, yy))) for t, (x, y), ((xx, xy), (yx, yy)) in rows
+        )
 
 
 def plausible_sightings(positions: Sequence[ObservedPosition]) -> Sightings:
@@ -56,7 +58,7 @@ def plausible_sightings(positions: Sequence[ObservedPosition]) -> Sightings:
 
 
 def _sound_places(xy_m: Floats) -> NDArray[np.bool_]:
-    return (np.abs(xy_m) <= FARTHEST_M).all(axis=1)
+    return np.asarray((np.abs(xy_m) <= FARTHEST_M).all(axis=1), dtype=np.bool_)
 
 
 def _sound_covariances(covariance_m2: Floats) -> NDArray[np.bool_]:

@@ -88,7 +88,8 @@ def _smooth_backwards(
 def _inverse(matrix: Floats) -> Floats:
     """Of a 2 x 2 matrix; much faster than the general one."""
     (a, b), (c, d) = matrix.tolist()
-    return np.array([[d, -b], [-c, a]]) / (a * d - b * c)
+    inverse: Floats = np.array([[d, -b], [-c, a]]) / (a * d - b * c)
+    return inverse
 
 
 def _transition(dt_s: float) -> Floats:

@@ -1,0 +1,148 @@
+"""From what was seen of a demonstration to the list of moves that will be imitated."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TypeVar
+
+import numpy as np
+
+from robot_agent.imitation.line_fitting import fit_segments, snap
+from robot_agent.imitation.moves import read_moves
+from robot_agent.imitation.observation import ObservedPosition
+from robot_agent.imitation.outliers import inliers
+from robot_agent.imitation.rests import Rest, demonstration_rests, find_rests
+from robot_agent.imitation.segments import Segment, find_vertices, segments_between
+from robot_agent.imitation.sightings import Sightings, plausible_sightings
+from robot_agent.imitation.smoothing import Smoothed, smooth
+from swarm.geometry import Move
+from swarm.learning.paths import ObservedPath
+
+MOST_POSITIONS = 20_000
+"""Over an hour at five frames a second; more is a fault, and would keep the robot from its work."""
+MOST_LOST = 0.3
+"""Larger a share of frames without the demonstrator, and nothing is copied."""
+
+Item = TypeVar("Item")
+
+
+class CopyProfile(StrEnum):
+    """How positions become moves."""
+
+    BEST = "best"
+    """Smooth, find the stops, and read the moves that explain all of them together."""
+    PAPER = "paper"
+    """Section 3.2 of the paper: regression line fitting."""
+
+
+@dataclass(frozen=True)
+class CopiedMove:
+    """A move, and by how much chi2 the best list beats the best one that reads it otherwise.
+
+    The profile `paper` weighs nothing, so its confidence is 0.
+    """
+
+    move: Move
+    confidence: float
+
+
+@dataclass(frozen=True)
+class Copy:
+    """What the observer believes that the demonstrator did."""
+
+    moves: tuple[CopiedMove, ...]
+    segments: tuple[Segment, ...]
+    smoothed: tuple[ObservedPosition, ...]
+    """The whole observation, not only the demonstration; the profile `paper` does not smooth."""
+
+    def path(self) -> ObservedPath:
+        return ObservedPath(tuple(copied.move for copied in self.moves))
+
+
+@dataclass(frozen=True)
+class NoCopy:
+    """Nothing is learnt from this observation."""
+
+    reason: str
+
+
+def copy_moves(
+    positions: Sequence[ObservedPosition], profile: CopyProfile, cell_m: float, expected_frames: int
+) -> Copy | NoCopy:
+    """The moves of the demonstration within an observation, or why there are none.
+
+    `positions` are those frames in which the demonstrator was seen, out of `expected_frames`. The drive
+    back to the start is left out, and so is a move that the observation's beginning or end cuts.
+    """
+    if len(positions) > MOST_POSITIONS:
+        return NoCopy(
+            f"{len(positions)} positions are more than {MOST_POSITIONS}: observe for a shorter time"
+        )
+    sightings = plausible_sightings(positions)
+    if lost := _lost(len(sightings), expected_frames):
+        return NoCopy(lost)
+    sightings = sightings.where(inliers(sightings))
+    if len(sightings) == 0:
+        return NoCopy("the positions contradict each other: no two are near enough in time and place")
+    smoothed = smooth(sightings)
+    rests = find_rests(smoothed, cell_m)
+    shown = demonstration_rests(smoothed, rests, cell_m)
+    if len(shown) < 2:
+        return NoCopy(_no_demonstration(rests))
+    copied = _copy(sightings, smoothed, shown, profile, cell_m)
+    return copied if copied.moves else NoCopy("the demonstrator moved, but by less than a cell")
+
+
+def _lost(seen: int, expected_frames: int) -> str | None:
+    if expected_frames < 1:
+        return "no frames were taken"
+    if seen == 0:
+        return f"the demonstrator was not seen in any of {expected_frames} frames"
+    if seen < (1 - MOST_LOST) * expected_frames:
+        return f"the demonstrator was lost in {expected_frames - seen} of {expected_frames} frames"
+    return None
+
+
+def _no_demonstration(rests: Sequence[Rest]) -> str:
+    if not rests:
+        return "the demonstrator never stood still, so no move begins or ends in view"
+    if len(rests) == 1:
+        return "the demonstrator stood still, or moved only while entering or leaving the observation"
+    return "the demonstrator only drove back to its start"
+
+
+def _copy(
+    sightings: Sightings, smoothed: Smoothed, shown: Sequence[Rest], profile: CopyProfile, cell_m: float
+) -> Copy:
+    if profile is CopyProfile.PAPER:
+        return _copy_by_lines(sightings, shown, cell_m)
+    return _copy_by_stops(sightings, smoothed, shown, cell_m)
+
+
+def _copy_by_stops(sightings: Sightings, smoothed: Smoothed, shown: Sequence[Rest], cell_m: float) -> Copy:
+    vertices = find_vertices(sightings, smoothed, shown, cell_m)
+    stretches = read_moves(vertices, cell_m)
+    moves = [
+        CopiedMove(stretch.move, stretch.confidence) for stretch in stretches for _ in range(stretch.cells)
+    ]
+    corners = [vertices[0], *(vertices[stretch.vertex] for stretch in stretches)]
+    covariance_m2 = smoothed.covariance[:, :2, :2]
+    smoothed_positions = Sightings(sightings.t_ns, smoothed.xy_m, covariance_m2).positions()
+    return Copy(tuple(moves), segments_between(corners), smoothed_positions)
+
+
+def _copy_by_lines(sightings: Sightings, shown: Sequence[Rest], cell_m: float) -> Copy:
+    within = np.zeros(len(sightings), dtype=np.bool_)
+    within[shown[0].first : shown[-1].last + 1] = True
+    segments = fit_segments(sightings.where(within), cell_m)
+    snapped = [snap(segment, cell_m) for segment in segments]
+    moves = [CopiedMove(move, 0.0) for move, cells in snapped for _ in range(cells)]
+    return Copy(tuple(moves), segments, sightings.positions())
+
+
+def choose_window(moves: Sequence[Item], count: int, rng: np.random.Generator) -> tuple[Item, ...]:
+    """`count` consecutive moves at a random place of a longer track; all of a shorter one."""
+    first = int(rng.integers(max(len(moves) - count, 0) + 1))
+    return tuple(moves[first : first + count])
