@@ -1,0 +1,195 @@
+"""The geometry of a camera: lens and mounting, read from a calibration file.
+
+Columns and rows are counted from the middle of the top-left pixel; bearings are counter-clockwise
+from the camera's axis, so a thing to the left has a positive bearing.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from swarm.errors import UserError, nearest
+from swarm.geometry import Pose
+
+NEWTON_STEPS = 8
+
+
+@dataclass(frozen=True)
+class CameraModel:
+    """A level camera with a lens that bends radially: r_image = r (1 + k1 r^2 + k2 r^4).
+
+    `horizontal_field_of_view_rad` is the true angle between the left and right border of the image,
+    bending included. `horizon` is the height of the horizon in the image, as a part of the image's
+    height from the top. `gamma` is the exponent of the sensor's tone curve: level = light^(1/gamma).
+    """
+
+    width: int
+    height: int
+    horizontal_field_of_view_rad: float
+    radial: tuple[float, float] = (0.0, 0.0)
+    horizon: float = 0.5
+    gamma: float = 1.0
+    forward_m: float = 0.03
+    height_m: float = 0.028
+    yaw_rad: float = 0.0
+
+    def __post_init__(self) -> None:
+        checks = {
+            "width and height must be even, in 16..4096": _is_size(self.width) and _is_size(self.height),
+            "the field of view must be in 10..150 degrees": 0.17 < self.horizontal_field_of_view_rad < 2.62,
+            "the horizon must be in 0.1..0.9": 0.1 <= self.horizon <= 0.9,
+            "gamma must be in 0.5..4": 0.5 <= self.gamma <= 4,
+            "the camera must be 1..500 mm above the floor": 0.001 <= self.height_m <= 0.5,
+            "the camera must be within 200 mm of the turning axis": abs(self.forward_m) <= 0.2,
+            "the yaw must be within 90 degrees": abs(self.yaw_rad) <= math.pi / 2,
+        }
+        for wrong, holds in checks.items():
+            if not holds:
+                raise ValueError(wrong)
+        if not self._bends_gently():
+            raise ValueError(f"radial coefficients {self.radial} fold the image over")
+
+    def _bends_gently(self) -> bool:
+        k1, k2 = self.radial
+        slant = math.tan(self.horizontal_field_of_view_rad / 2) * math.hypot(1, self.height / self.width)
+        radii = np.linspace(0, 1.2 * slant, 50)
+        return bool(np.all(1 + 3 * k1 * radii**2 + 5 * k2 * radii**4 > 0.1))
+
+    @property
+    def centre_column(self) -> float:
+        return (self.width - 1) / 2
+
+    @property
+    def horizon_row(self) -> float:
+        return self.horizon * self.height - 0.5
+
+    @cached_property
+    def focal_px(self) -> float:
+        """Pixels per unit of slope at the middle of the image."""
+        k1, k2 = self.radial
+        slope = math.tan(self.horizontal_field_of_view_rad / 2)
+        return self.width / 2 / (slope * (1 + k1 * slope**2 + k2 * slope**4))
+
+    def slopes(self, column: ArrayLike, row: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The undistorted ray of a pixel, per unit of depth: (to the right, up)."""
+        right = (np.asarray(column, dtype=np.float64) - self.centre_column) / self.focal_px
+        up = (self.horizon_row - np.asarray(row, dtype=np.float64)) / self.focal_px
+        bent = np.hypot(right, up)
+        scale = self._straighten(bent)
+        return right * scale, up * scale
+
+    def _straighten(self, bent: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Undistorted over distorted radius, by Newton's method."""
+        k1, k2 = self.radial
+        radius = bent.copy()
+        for _ in range(NEWTON_STEPS):
+            error = radius * (1 + k1 * radius**2 + k2 * radius**4) - bent
+            radius -= error / (1 + 3 * k1 * radius**2 + 5 * k2 * radius**4)
+        return np.divide(radius, bent, out=np.ones_like(bent), where=bent > 0)
+
+    def bearing_rad(self, column: float) -> float:
+        """The direction that a column (fractions allowed) looks at, on the horizon."""
+        right, _ = self.slopes(column, self.horizon_row)
+        return -math.atan(float(right))
+
+    def column(self, bearing_rad: float) -> float:
+        """The column at which the horizon has this bearing: the inverse of `bearing_rad`."""
+        k1, k2 = self.radial
+        slope = -math.tan(bearing_rad)
+        return self.centre_column + self.focal_px * slope * (1 + k1 * slope**2 + k2 * slope**4)
+
+    def pose(self, robot: Pose) -> Pose:
+        """Where the camera is, and where its axis points, on a robot that stands here."""
+        return robot.compose(Pose(self.forward_m, 0.0, self.yaw_rad))
+
+    def scaled(self, width: int, height: int) -> CameraModel:
+        """The same camera read out at another resolution."""
+        return replace(self, width=width, height=height)
+
+
+def _is_size(pixels: int) -> bool:
+    return 16 <= pixels <= 4096 and pixels % 2 == 0
+
+
+_FIELDS: dict[str, dict[str, type]] = {
+    "image": {"width": int, "height": int},
+    "lens": {"horizontal_field_of_view_deg": float, "radial": list, "horizon": float, "gamma": float},
+    "mounting": {"forward_m": float, "height_m": float, "yaw_deg": float},
+}
+
+
+def load_camera_model(path: Path | str) -> CameraModel:
+    """Read a calibration file (deploy/cameras/*.toml); every field of it must be there.
+
+    Raises UserError, naming the file and the field, when the file cannot be used.
+    """
+    try:
+        with Path(path).open("rb") as file:
+            tables = tomllib.load(file)
+    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UserError(f"camera calibration {path}: {error}") from error
+    try:
+        return _model(_checked(tables))
+    except ValueError as error:
+        raise UserError(f"camera calibration {path}: {error}") from error
+
+
+def _model(values: Mapping[str, Any]) -> CameraModel:
+    return CameraModel(
+        width=values["width"],
+        height=values["height"],
+        horizontal_field_of_view_rad=math.radians(values["horizontal_field_of_view_deg"]),
+        radial=_pair(values["radial"]),
+        horizon=values["horizon"],
+        gamma=values["gamma"],
+        forward_m=values["forward_m"],
+        height_m=values["height_m"],
+        yaw_rad=math.radians(values["yaw_deg"]),
+    )
+
+
+def _checked(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """All the fields in one dictionary; ValueError for one that is unknown, missing or of a wrong type."""
+    _refuse_unknown("table", tables, _FIELDS)
+    values: dict[str, Any] = {}
+    for table, fields in _FIELDS.items():
+        given = tables.get(table, {})
+        if not isinstance(given, dict):
+            raise ValueError(f"{table} must be a table: write [{table}]")
+        _refuse_unknown(f"field of [{table}]", given, fields)
+        for name, kind in fields.items():
+            values[name] = _typed(f"[{table}] {name}", given.get(name), kind)
+    return values
+
+
+def _refuse_unknown(what: str, given: Mapping[str, Any], known: Mapping[str, Any]) -> None:
+    for name in given:
+        if name not in known:
+            raise ValueError(f"unknown {what} {name!r}; {nearest(name, known)}")
+
+
+def _typed(where: str, value: Any, kind: type) -> Any:
+    if value is None:
+        raise ValueError(f"{where} is missing")
+    accepted = (int, float) if kind is float else (kind,)
+    if isinstance(value, bool) or not isinstance(value, accepted):
+        raise ValueError(f"{where} = {value!r} is not {'a number' if kind in (int, float) else 'a list'}")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError(f"{where} = {value!r} is not finite")
+    return value
+
+
+def _pair(values: list[Any]) -> tuple[float, float]:
+    if len(values) != 2:
+        raise ValueError(f"[lens] radial = {values!r} must have two numbers, k1 and k2")
+    first, second = (_typed("[lens] radial", value, float) for value in values)
+    return first, second
