@@ -1,0 +1,154 @@
+"""TOML files to typed settings: whatever a file says that the settings do not know stops the program.
+
+An error names the file, the line, what is allowed and the nearest known key.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import re
+import tomllib
+import types
+import typing
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import Any, TypeVar
+
+from swarm.errors import UserError, nearest
+
+S = TypeVar("S")
+
+
+@dataclass(frozen=True)
+class Between:
+    """The range that a number may have, borders included; use with `Annotated`."""
+
+    low: float
+    high: float = math.inf
+
+
+class ConfigFile:
+    """A TOML file with the places of its keys, for errors that a person can follow."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._lines = _read(path).splitlines()
+        try:
+            self.values: dict[str, Any] = tomllib.loads("\n".join(self._lines))
+        except tomllib.TOMLDecodeError as error:
+            raise UserError(f"{path}: not valid TOML: {error}") from error
+
+    def error(self, where: tuple[str | int, ...], text: str) -> UserError:
+        """An error about the key at a place such as ("robot", 1, "id")."""
+        return UserError(f"{self.path}:{self._line_of(where)}: {text}")
+
+    def settings(self, kind: type[S]) -> S:
+        """The whole file as one settings dataclass."""
+        return self._table(kind, self.values, ())
+
+    def _table(self, kind: type[S], values: dict[str, Any], where: tuple[str | int, ...]) -> S:
+        fields = {field.name: field for field in dataclasses.fields(kind)}  # type: ignore[arg-type]
+        hints = typing.get_type_hints(kind, include_extras=True)
+        for name in values:
+            if name not in fields:
+                raise self.error((*where, name), f"unknown key {name!r}; {nearest(name, fields)}")
+        for name, field in fields.items():
+            if name not in values and _is_required(field):
+                raise self.error(where, f"{name!r} is missing{_in_table(where)}")
+        return kind(
+            **{name: self._value(hints[name], value, (*where, name)) for name, value in values.items()}
+        )
+
+    def _value(self, hint: Any, value: Any, where: tuple[str | int, ...]) -> Any:
+        bounds: Between | None = None
+        if typing.get_origin(hint) is typing.Annotated:
+            hint, bounds = typing.get_args(hint)
+        if isinstance(hint, types.UnionType):
+            hint = next(choice for choice in typing.get_args(hint) if choice is not type(None))
+        if dataclasses.is_dataclass(hint) and isinstance(hint, type):
+            if not isinstance(value, dict):
+                raise self.error(where, f"{where[-1]!r} is a table, not {value!r}")
+            return self._table(hint, value, where)
+        if typing.get_origin(hint) is tuple:
+            return self._sequence(hint, bounds, value, where)
+        return self._scalar(hint, bounds, value, where)
+
+    def _sequence(self, hint: Any, bounds: Between | None, value: Any, where: tuple[str | int, ...]) -> Any:
+        if not isinstance(value, list):
+            raise self.error(where, f"{where[-1]!r} is a list, not {value!r}")
+        kinds = typing.get_args(hint)
+        if kinds[-1] is Ellipsis:
+            kinds = (kinds[0],) * len(value)
+        if len(kinds) != len(value):
+            raise self.error(where, f"{where[-1]!r} has {len(value)} values; it takes {len(kinds)}")
+        hints = [typing.Annotated[kind, bounds] if bounds else kind for kind in kinds]
+        return tuple(
+            self._value(kind, entry, (*where, i))
+            for i, (kind, entry) in enumerate(zip(hints, value, strict=True))
+        )
+
+    def _scalar(self, kind: type, bounds: Between | None, value: Any, where: tuple[str | int, ...]) -> Any:
+        name = next(str(part) for part in reversed(where) if isinstance(part, str))
+        if issubclass(kind, Enum):
+            known = {member.value: member for member in kind}
+            if value not in known:
+                raise self.error(where, f"{name!r} is {value!r}; {nearest(str(value), known)}")
+            return known[value]
+        if kind is float and type(value) is int:
+            value = float(value)
+        if type(value) is not kind:
+            raise self.error(where, f"{name!r} is a {_WORDS[kind]}, not {value!r}")
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            self._check_number(name, value, bounds, where)
+        return value
+
+    def _check_number(
+        self, name: str, value: float, bounds: Between | None, where: tuple[str | int, ...]
+    ) -> None:
+        if not math.isfinite(value):
+            raise self.error(where, f"{name!r} is {value}; a finite number is wanted")
+        if bounds and not bounds.low <= value <= bounds.high:
+            at_most = "" if math.isinf(bounds.high) else f" and at most {bounds.high:g}"
+            raise self.error(where, f"{name!r} is {value}; it has to be at least {bounds.low:g}{at_most}")
+
+    def _line_of(self, where: tuple[str | int, ...]) -> int:
+        """The line of a key, or of the table that it belongs to, counted from 1."""
+        names = [part for part in where if isinstance(part, str)]
+        counts = [part for part in where if isinstance(part, int)]
+        best, table, seen = 1, "", 0
+        wanted_table = ".".join(names[:-1])
+        for number, line in enumerate(self._lines, 1):
+            header = re.match(r"\s*\[\[?\s*([\w.\- ]+?)\s*\]\]?", line)
+            if header:
+                seen = seen + 1 if header[1] == table else 0
+                table = header[1]
+                is_right = table in (wanted_table, ".".join(names)) and (not counts or seen == counts[0])
+                best = number if is_right else best
+            elif names and table == wanted_table and (not counts or seen == counts[0] or not table):
+                key = re.match(r"""\s*["']?([\w\-]+)["']?\s*=""", line)
+                if key and key[1] == names[-1]:
+                    return number
+        return best
+
+
+_WORDS = {str: "text", int: "whole number", float: "number", bool: "true or false"}
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise UserError(f"{path}: there is no such file") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"{path}: cannot be read as text: {error}") from error
+
+
+def _is_required(field: dataclasses.Field[Any]) -> bool:
+    return field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
+
+
+def _in_table(where: tuple[str | int, ...]) -> str:
+    names = ".".join(str(part) for part in where if isinstance(part, str))
+    return f" in [{names}]" if names else ""

@@ -1,0 +1,203 @@
+"""What an experiment file says: the run, the arena, the rules of learning, the robots.
+
+`Experiment.load` is the one door: it also checks what no single value shows, such as two robots with
+one id or compartments that overlap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from pathlib import Path
+from typing import Annotated
+
+from swarm.config import Between, ConfigFile
+from swarm.geometry import Compartment, Grid
+from swarm.keys import is_id
+from swarm.learning.memory import Approach
+from swarm.learning.paths import ObservedPath
+
+NonNegative = Between(0)
+
+
+class Role(Enum):
+    """What a robot does in its compartment."""
+
+    LEARNER = "learner"
+    EXPERT = "expert"
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """[run]: how long, how often, and from which seed."""
+
+    name: str
+    moves: Annotated[int, Between(1, 10_000_000)] = 15_000
+    """Moves of each learner in a trial; the paper's 15,000 take about 10 hours on robots."""
+    trials: Annotated[int, Between(1, 10_000)] = 1
+    seed: Annotated[int, Between(0, 2**63 - 1)] = 1
+
+
+@dataclass(frozen=True)
+class ArenaSettings:
+    """[arena]: the floor, and the grid of every compartment."""
+
+    width_m: Annotated[float, Between(0.1, 100)] = 3.0
+    height_m: Annotated[float, Between(0.1, 100)] = 3.0
+    cell_m: Annotated[float, Between(0.05, 10)] = 0.12
+    columns: Annotated[int, Between(2, 100)] = 10
+    rows: Annotated[int, Between(2, 100)] = 10
+
+
+@dataclass(frozen=True)
+class LearningSettings:
+    """[learning]: eq. 2-7."""
+
+    epsilon: Annotated[float, Between(0, 1)] = 0.1
+    """Probability of a random move."""
+    beta: Annotated[float, Between(0, 0.999)] = 0.5
+    """Regulates the initial imitation probability; below 1 for the convergence proof."""
+    approach: Approach = Approach.AVERAGE_Q
+    capacity: Annotated[int, Between(1, 1000)] = 10
+    """Paths in the memory; on robots a full memory copies no more."""
+    discount_rate_per_s: Annotated[float, Between(0, 100)] = 0.149
+    """Eq. 7's beta: 0.149/s is a discount of 0.7 over a move of 2.4 s."""
+    blocked_move_s: Annotated[float, Between(0, 60)] = 0.5
+    """A move into a wall is decided, not driven; the robot stands still this long."""
+    path_length_cap: Annotated[int, Between(1, 100_000)] = 100
+    """What a greedy path that never arrives counts as."""
+
+
+@dataclass(frozen=True)
+class BodySettings:
+    """[body]: faults of the simulated wheels."""
+
+    slip_sd: Annotated[float, Between(0, 0.5)] = 0.01
+    gain_error_sd: Annotated[float, Between(0, 0.5)] = 0.015
+    latency_s: Annotated[float, Between(0, 1)] = 0.06
+
+
+@dataclass(frozen=True)
+class TrackerSettings:
+    """[tracker]: which tracking system and, for the simulated one, its faults."""
+
+    backend: str = "sim"
+    rate_hz: Annotated[float, Between(0.1, 1000)] = 10.0
+    noise_m: Annotated[float, NonNegative] = 0.001
+    noise_rad: Annotated[float, NonNegative] = 0.0087
+    latency_s: Annotated[float, Between(0, 5)] = 0.06
+    """At least this late; in lockstep a pose arrives two ticks after it was true."""
+    loss: Annotated[float, Between(0, 1)] = 0.02
+    """Share of poses that are missing."""
+    blackouts_per_hour: Annotated[float, NonNegative] = 10.0
+    """Longer losses of one robot."""
+    blackout_s: Annotated[float, NonNegative] = 3.0
+
+
+@dataclass(frozen=True)
+class SimulationSettings:
+    """[simulation]: the length of a tick and the number of processes for the robots."""
+
+    tick_s: Annotated[float, Between(0.01, 1)] = 0.1
+    processes: Annotated[int, Between(0, 1000)] = 0
+    """Processes that host the robots; 0 gives each robot its own, as on hardware."""
+
+
+@dataclass(frozen=True)
+class RobotSettings:
+    """[[robot]]: one robot, its compartment and what it may imitate."""
+
+    id: str
+    south_west_m: tuple[float, float]
+    """The compartment's corner in the arena frame."""
+    role: Role = Role.LEARNER
+    condition: str = ""
+    """Learners of one condition share a curve; the role's name if empty."""
+    paths: tuple[tuple[str, ...], ...] = ()
+    """Paths given at the start, each a list of compass moves."""
+
+    @property
+    def group(self) -> str:
+        return self.condition or self.role.value
+
+    def given_paths(self) -> tuple[ObservedPath, ...]:
+        return tuple(ObservedPath.parse(path) for path in self.paths)
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """An experiment file, checked."""
+
+    run: RunSettings
+    robot: tuple[RobotSettings, ...]
+    arena: ArenaSettings = field(default_factory=ArenaSettings)
+    learning: LearningSettings = field(default_factory=LearningSettings)
+    body: BodySettings = field(default_factory=BodySettings)
+    tracker: TrackerSettings = field(default_factory=TrackerSettings)
+    simulation: SimulationSettings = field(default_factory=SimulationSettings)
+
+    @classmethod
+    def load(cls, path: Path) -> Experiment:
+        """Read and check an experiment file; UserError names the file, the line and the cure."""
+        file = ConfigFile(path)
+        experiment = file.settings(cls)
+        _check(experiment, file)
+        return experiment
+
+    def compartment(self, robot: RobotSettings) -> Compartment:
+        """The walled square that belongs to a robot."""
+        grid = Grid(self.arena.columns, self.arena.rows)
+        return Compartment(*robot.south_west_m, grid, self.arena.cell_m)
+
+    def robot_named(self, name: str) -> RobotSettings:
+        return next(robot for robot in self.robot if robot.id == name)
+
+    @property
+    def learners(self) -> tuple[RobotSettings, ...]:
+        return tuple(robot for robot in self.robot if robot.role is Role.LEARNER)
+
+
+def _check(experiment: Experiment, file: ConfigFile) -> None:
+    if not is_id(experiment.run.name):
+        raise file.error(("run", "name"), f"'name' is {experiment.run.name!r}; {_ID_RULE}")
+    if not experiment.learners:
+        raise file.error(("robot", 0, "role"), "no robot is a learner: there is nothing to learn or to plot")
+    for number, robot in enumerate(experiment.robot):
+        _check_robot(experiment, number, robot, file)
+
+
+_ID_RULE = "an id starts with a small letter and has at most 32 of a-z, 0-9, _ and -"
+
+
+def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number)
+    for name, value in (("id", robot.id), ("condition", robot.group)):
+        if not is_id(value):
+            raise file.error((*where, name), f"{name!r} is {value!r}; {_ID_RULE}")
+    if robot.paths and robot.role is not Role.LEARNER:
+        raise file.error((*where, "paths"), f"{robot.id!r} is no learner: it cannot be given paths")
+    if len(robot.paths) > experiment.learning.capacity:
+        raise file.error((*where, "paths"), f"{len(robot.paths)} paths do not fit in [learning] capacity")
+    try:
+        robot.given_paths()
+    except ValueError as error:
+        raise file.error((*where, "paths"), str(error)) from error
+    _check_place(experiment, number, robot, file)
+
+
+def _check_place(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number, "south_west_m")
+    place, arena = experiment.compartment(robot), experiment.arena
+    slack_m = 1e-9
+    if (
+        min(place.west_m, place.south_m) < -slack_m
+        or place.east_m > arena.width_m + slack_m
+        or place.north_m > arena.height_m + slack_m
+    ):
+        size = f"{arena.width_m:g} x {arena.height_m:g} m"
+        raise file.error(where, f"the compartment of {robot.id!r} reaches out of the arena of {size}")
+    for other in experiment.robot[:number]:
+        if other.id == robot.id:
+            raise file.error(("robot", number, "id"), f"two robots are called {robot.id!r}")
+        if place.overlaps(experiment.compartment(other)):
+            raise file.error(where, f"the compartments of {other.id!r} and {robot.id!r} overlap")
