@@ -223,3 +223,13 @@ def _sighting(
         t_ns,
         own_heading_sd_rad=0.0,
     )
+
+
+def edit_distance(one: Sequence[Move], other: Sequence[Move]) -> int:
+    """Levenshtein: how many moves must be inserted, removed or replaced."""
+    row = list(range(len(other) + 1))
+    for i, a in enumerate(one, start=1):
+        above, row = row, [i]
+        for j, b in enumerate(other, start=1):
+            row.append(min(above[j - 1] + (a != b), above[j] + 1, row[j - 1] + 1))
+    return row[-1]
