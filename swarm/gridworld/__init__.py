@@ -1,1 +1,1 @@
-"""The grid worlds of section 2 and their compiled engine."""
+"""The grid worlds of section 2 and the compiled engine that runs its hundred-run studies."""

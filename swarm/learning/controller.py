@@ -107,9 +107,10 @@ class Controller:
         return Replay(chosen) if self.memory.p_imitate(chosen) > self.rng.random() else None
 
     def _epsilon_greedy(self, state: int) -> int:
-        if self.epsilon > self.rng.random():
-            return int(self.rng.integers(MOVES))
-        return self.q.greedy(state, self.rng)
+        """Two random numbers, whatever they decide."""
+        explores = self.epsilon > self.rng.random()
+        actions = range(MOVES) if explores else self.q.best_actions(state)
+        return actions[int(self.rng.integers(len(actions)))]
 
     @staticmethod
     def _outcome(replay: Replay, *, blocked: bool, arrived: bool) -> Outcome | None:

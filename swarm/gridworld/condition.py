@@ -1,0 +1,123 @@
+"""What a study compares: one learner's (or pair's) arena, teacher and settings, as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from swarm.gridworld.arena import Arena
+from swarm.learning.memory import Approach
+from swarm.learning.paths import ObservedPath
+
+
+@dataclass(frozen=True)
+class NoTeacher:
+    """Q-learning without imitation: an empty memory."""
+
+
+@dataclass(frozen=True)
+class GivenPaths:
+    """Paths that are in the memory from the start, and stay."""
+
+    paths: tuple[ObservedPath, ...]
+
+
+@dataclass(frozen=True)
+class Expert:
+    """One who follows the arena's expert path for ever (section 2.3.2 a).
+
+    Each time the learner has reached the goal `every` times more, it copies `moves` consecutive moves
+    from a random place of that path.
+    """
+
+    moves: int = 20
+    every: int = 100
+
+
+@dataclass(frozen=True)
+class Experienced:
+    """One who learnt without imitation until it had reached the goal `goal_reachings` times (2.3.2 b).
+
+    It goes on learning and exploring, alternately with the learner, which copies the last `moves`
+    moves of it every `every` goal reachings of its own.
+    """
+
+    moves: int = 20
+    every: int = 100
+    goal_reachings: int = 90_000
+
+
+@dataclass(frozen=True)
+class EachOther:
+    """Two learners that start together, step alternately and copy each other (2.3.2 c)."""
+
+    moves: int = 20
+    every: int = 100
+
+
+@dataclass(frozen=True)
+class AccessExpert:
+    """The expert's best action in the learner's own state, for up to `moves` moves (section 2.4)."""
+
+    moves: int = 20
+
+
+@dataclass(frozen=True)
+class AccessEachOther:
+    """Two learners that read each other's best action in their own state (section 2.4)."""
+
+    moves: int = 20
+
+
+Teacher = NoTeacher | GivenPaths | Expert | Experienced | EachOther | AccessExpert | AccessEachOther
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One curve of a figure.
+
+    A run ends after `steps` time steps or when its first learner has reached the goal
+    `goal_reachings` times, whichever comes first. The best path is evaluated every `evaluate_every`
+    time steps, up to `points` times.
+    """
+
+    name: str
+    arena: Arena
+    teacher: Teacher
+    epsilon: float
+    beta: float = 0.5
+    approach: Approach = Approach.AVERAGE_Q
+    capacity: int = 10
+    steps: int | None = None
+    goal_reachings: int | None = None
+    evaluate_every: int = 1000
+    points: int | None = None
+    """How many points the figure needs; None for all of `steps`."""
+
+    def __post_init__(self) -> None:
+        if self.steps is None and (self.goal_reachings is None or self.points is None):
+            raise ValueError(f"{self.name}: give steps, or goal_reachings and the points to evaluate")
+        counts = (self.steps, self.goal_reachings, self.evaluate_every, self.points, self.capacity)
+        if any(count is not None and count < 1 for count in counts):
+            raise ValueError(
+                f"{self.name}: steps, goal_reachings, evaluate_every, points and capacity start at 1"
+            )
+        if not (0.0 <= self.epsilon <= 1.0 and 0.0 <= self.beta <= 1.0):
+            raise ValueError(f"{self.name}: epsilon and beta are probabilities, between 0 and 1")
+        if isinstance(self.teacher, GivenPaths) and len(self.teacher.paths) > self.capacity:
+            raise ValueError(
+                f"{self.name}: {len(self.teacher.paths)} paths do not fit a memory of {self.capacity}"
+            )
+
+    @property
+    def point_limit(self) -> int:
+        """How many times the best path is evaluated in a run that uses all of its time steps."""
+        if self.steps is None:
+            assert self.points is not None
+            return self.points
+        all_points = self.steps // self.evaluate_every
+        return all_points if self.points is None else min(self.points, all_points)
+
+    @property
+    def learners(self) -> int:
+        """Whose curves a run yields: two for a pair that teach each other, else one."""
+        return 2 if isinstance(self.teacher, EachOther | AccessEachOther) else 1

@@ -1,0 +1,387 @@
+"""The compiled twin of `swarm.learning`: the same rules, from the same random numbers, bit for bit.
+
+It is fast because it keeps, for each state, the best value and the set of greedy actions (one bit an
+action) and changes them when a value changes, instead of looking at eight values at every step. All
+compiled functions stand in this one file, since numba's cache notices changes of that file only.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from swarm.geometry import MOVES
+from swarm.gridworld.splitmix import FIRST, GOLDEN, SECOND
+
+ALL_MOVES = (1 << MOVES) - 1
+SETS = [[move for move in range(MOVES) if mask >> move & 1] for mask in range(ALL_MOVES + 1)]
+SIZE = np.array([len(members) for members in SETS], np.uint8)
+"""How many actions a set has (256,)."""
+MEMBER = np.array([members + [0] * (MOVES - len(members)) for members in SETS], np.uint8).ravel()
+"""The k-th action of a set, at 8 x set + k (2048,)."""
+
+NO_REPLAY = -1
+FIXED, COMPLETION, AVERAGE_Q = 0, 1, 2
+WATCHES_NOBODY, WATCHES_EXPERT, WATCHES_OTHER = 0, 1, 2
+
+_GOLDEN, _FIRST, _SECOND = np.uint64(GOLDEN), np.uint64(FIRST), np.uint64(SECOND)
+
+
+class World(NamedTuple):
+    """The arena: where each move leads (states x moves,), and the two ends of a run."""
+
+    neighbours: NDArray[np.int16]
+    start: int
+    goal: int
+
+
+class Rules(NamedTuple):
+    """What does not change during a run."""
+
+    alpha: float
+    gamma: float
+    epsilon: float
+    beta: float
+    approach: int
+    watches: int
+    every: int
+    moves: int
+    accesses: bool
+    """Whether a path is the other agent's policy, of `moves` moves"""
+    seen: bool
+    """Whether another watches, so that the agent's moves have to be kept"""
+
+
+class Limits(NamedTuple):
+    """When a run ends, how often the best path is evaluated, and whether a second agent takes part."""
+
+    steps: int
+    reachings: int
+    every: int
+    pair: bool
+
+
+class Agent(NamedTuple):
+    """One agent: its table, its memory of paths, and the moves that others may have seen of it.
+
+    Single numbers are arrays of one, so that the kernels can change them.
+    """
+
+    q: NDArray[np.float64]
+    """(states x moves,)"""
+    best: NDArray[np.float64]
+    """max_a Q(s, a) (states,)"""
+    greedy: NDArray[np.uint8]
+    """The set of actions that have that value (states,)"""
+    place: NDArray[np.int64]
+    arrivals: NDArray[np.int64]
+    stream: NDArray[np.uint64]
+    watching: NDArray[np.uint64]
+    """The stream of what the agent happens to see."""
+    paths: NDArray[np.uint8]
+    """(capacity, moves)"""
+    lengths: NDArray[np.int64]
+    replicated: NDArray[np.int64]
+    counted: NDArray[np.int64]
+    """n_completed or n_Q+ (capacity,)"""
+    ratios: NDArray[np.float64]
+    """R_i of eq. 4 (capacity,)"""
+    totals: NDArray[np.float64]
+    """Their running sums (capacity,)"""
+    remembered: NDArray[np.int64]
+    replayed: NDArray[np.int64]
+    """The memory's place of the path being replayed, or NO_REPLAY"""
+    index: NDArray[np.int64]
+    change: NDArray[np.float64]
+    """The sum of the replay's changes of Q values"""
+    trail: NDArray[np.uint8]
+    """The last moves of this run, in a ring (moves,)"""
+    trail_moves: NDArray[np.int64]
+    """Moves of this run so far"""
+    shown: NDArray[np.uint8]
+    """The last moves of the run before (moves,)"""
+    shown_moves: NDArray[np.int64]
+
+
+class BestPath(NamedTuple):
+    """The last greedy path found without a random choice, and the sets that it rests on."""
+
+    route: NDArray[np.int16]
+    sets: NDArray[np.uint8]
+    length: NDArray[np.int64]
+    """0 if the last path met a tie"""
+    stream: NDArray[np.uint64]
+    lengths: NDArray[np.int16]
+    """What was found so far (points,)"""
+
+
+@njit(cache=True)
+def _bits(stream):  # type: ignore[no-untyped-def]
+    word = stream[0] + _GOLDEN
+    stream[0] = word
+    word = (word ^ (word >> np.uint64(30))) * _FIRST
+    word = (word ^ (word >> np.uint64(27))) * _SECOND
+    return word ^ (word >> np.uint64(31))
+
+
+@njit(cache=True)
+def _random(stream):  # type: ignore[no-untyped-def]
+    return np.float64(np.int64(_bits(stream) >> np.uint64(11))) * 2.0**-53
+
+
+@njit(cache=True)
+def _integer(high, stream):  # type: ignore[no-untyped-def]
+    return np.int64(((_bits(stream) >> np.uint64(32)) * np.uint64(high)) >> np.uint64(32))
+
+
+@njit(cache=True)
+def _pick(actions, stream):  # type: ignore[no-untyped-def]
+    """A member of a set of actions, at random."""
+    return np.int64(MEMBER[np.int64(actions) * MOVES + _integer(SIZE[actions], stream)])
+
+
+@njit(cache=True)
+def _greedy(actions, stream):  # type: ignore[no-untyped-def]
+    """`QTable.greedy`."""
+    return np.int64(MEMBER[np.int64(actions) * MOVES]) if SIZE[actions] == 1 else _pick(actions, stream)
+
+
+@njit(cache=True)
+def _ratio(agent, i, approach):  # type: ignore[no-untyped-def]
+    """`ImitationMemory.ratio`."""
+    if approach == FIXED:
+        return 1.0
+    return (agent.counted[i] + 1) / (agent.replicated[i] + 1)
+
+
+@njit(cache=True)
+def _weigh(agent, first, approach):  # type: ignore[no-untyped-def]
+    """Bring the ratios and their running sums up to date from the path `first` on."""
+    total = agent.totals[first - 1] if first > 0 else 0.0
+    for i in range(first, agent.remembered[0]):
+        agent.ratios[i] = _ratio(agent, i, approach)
+        total += agent.ratios[i]
+        agent.totals[i] = total
+
+
+@njit(cache=True)
+def _choose_path(agent):  # type: ignore[no-untyped-def]
+    """`ImitationMemory.choose`."""
+    last = agent.remembered[0] - 1
+    if last == 0:
+        return 0
+    at = _random(agent.stream) * agent.totals[last]
+    chosen = 0
+    for i in range(last):
+        chosen += agent.totals[i] <= at
+    return chosen
+
+
+@njit(cache=True)
+def remember(agent, rules, moves, start, length):  # type: ignore[no-untyped-def]
+    """`ImitationMemory.remember` of `length` moves out of a ring that begins at `start`."""
+    if agent.remembered[0] == len(agent.lengths):
+        _forget(agent, np.argmin(agent.ratios))
+    i = agent.remembered[0]
+    for k in range(length):
+        agent.paths[i, k] = moves[(start + k) % len(moves)]
+    agent.lengths[i], agent.replicated[i], agent.counted[i] = length, 0, 0
+    agent.remembered[0] += 1
+    _weigh(agent, 0, rules.approach)
+
+
+@njit(cache=True)
+def _forget(agent, lowest):  # type: ignore[no-untyped-def]
+    for i in range(lowest, agent.remembered[0] - 1):
+        agent.paths[i] = agent.paths[i + 1]
+        agent.lengths[i] = agent.lengths[i + 1]
+        agent.replicated[i] = agent.replicated[i + 1]
+        agent.counted[i] = agent.counted[i + 1]
+        agent.ratios[i] = agent.ratios[i + 1]
+    agent.remembered[0] -= 1
+
+
+@njit(cache=True)
+def _epsilon_greedy(agent, rules):  # type: ignore[no-untyped-def]
+    actions = agent.greedy[agent.place[0]]
+    if rules.epsilon > _random(agent.stream):
+        actions = np.uint8(ALL_MOVES)
+    return _pick(actions, agent.stream)
+
+
+@njit(cache=True)
+def _choose(agent, other, rules):  # type: ignore[no-untyped-def]
+    """`Controller.choose`."""
+    last = False
+    if agent.replayed[0] == NO_REPLAY:
+        path = _choose_path(agent)
+        if rules.beta * agent.ratios[path] <= _random(agent.stream):
+            return _epsilon_greedy(agent, rules)
+        agent.replayed[0], agent.index[0], agent.change[0] = path, 0, 0.0
+    else:
+        agent.index[0] += 1
+        last = agent.index[0] == agent.lengths[agent.replayed[0]] - 1
+    place = agent.place[0]
+    if rules.accesses:
+        action = _greedy(other.greedy[place], agent.stream)
+    else:
+        action = np.int64(agent.paths[agent.replayed[0], agent.index[0]])
+    if not last and not (agent.greedy[place] >> action) & 1:
+        _end(agent, rules, False)
+        return _epsilon_greedy(agent, rules)
+    return action
+
+
+@njit(cache=True)
+def _end(agent, rules, completed):  # type: ignore[no-untyped-def]
+    """`Controller._end`."""
+    path = agent.replayed[0]
+    agent.replicated[path] += 1
+    agent.counted[path] += completed if rules.approach == COMPLETION else agent.change[0] > 0.0
+    _weigh(agent, path, rules.approach)
+    agent.replayed[0] = NO_REPLAY
+
+
+@njit(cache=True)
+def _update(agent, rules, action, reward, entered):  # type: ignore[no-untyped-def]
+    """`QTable.update`, and the set of greedy actions with it."""
+    place = agent.place[0]
+    at = place * MOVES + action
+    change = rules.alpha * (reward + rules.gamma * agent.best[entered] - agent.q[at])
+    value = agent.q[at] + change
+    agent.q[at] = value
+    best, actions, this = agent.best[place], np.int64(agent.greedy[place]), np.int64(1) << action
+    joined = actions | this if value == best else actions & ~this
+    actions = this if value > best else joined
+    best = max(value, best)
+    if actions == 0:
+        best, actions = _scan(agent.q, place)
+    agent.best[place], agent.greedy[place] = best, actions
+    return change
+
+
+@njit(cache=True)
+def _scan(q, place):  # type: ignore[no-untyped-def]
+    """The best value of a state and the set of actions that have it."""
+    row = q[place * MOVES : (place + 1) * MOVES]
+    best, actions = row.max(), 0
+    for action in range(MOVES):
+        actions |= (row[action] == best) << action
+    return best, actions
+
+
+@njit(cache=True)
+def prepare(agent):  # type: ignore[no-untyped-def]
+    """Find the best values and greedy sets of a table that was filled from outside."""
+    for place in range(len(agent.best)):
+        agent.best[place], agent.greedy[place] = _scan(agent.q, place)
+
+
+@njit(cache=True)
+def step(world, agent, other, rules):  # type: ignore[no-untyped-def]
+    """Choose, move and learn once; whether the goal was reached, and the agent put back to the start."""
+    imitates = agent.remembered[0] > 0
+    action = _choose(agent, other, rules) if imitates else _epsilon_greedy(agent, rules)
+    place = agent.place[0]
+    entered = np.int64(world.neighbours[place * MOVES + action])
+    arrived = entered == world.goal
+    change = _update(agent, rules, action, 1.0 if arrived else 0.0, entered)
+    if imitates and agent.replayed[0] != NO_REPLAY:
+        agent.change[0] += change
+        completed = agent.index[0] == agent.lengths[agent.replayed[0]] - 1
+        if completed or arrived or entered == place:
+            _end(agent, rules, completed)
+    if rules.seen:
+        _leave_trail(agent, action, arrived)
+    agent.place[0] = world.start if arrived else entered
+    agent.arrivals[0] += arrived
+    return arrived
+
+
+@njit(cache=True)
+def _leave_trail(agent, action, arrived):  # type: ignore[no-untyped-def]
+    ring = len(agent.trail)
+    agent.trail[agent.trail_moves[0] % ring] = action
+    agent.trail_moves[0] += 1
+    if arrived:
+        agent.shown[:] = agent.trail
+        agent.shown_moves[0], agent.trail_moves[0] = agent.trail_moves[0], 0
+
+
+@njit(cache=True)
+def _copy_moves(agent, other, rules, expert_path):  # type: ignore[no-untyped-def]
+    """See a stretch of the teacher's trajectory and remember it.
+
+    Of another agent these are its last moves, all of one run: the agents' runs are out of step, so
+    they come from a random place of its trajectory.
+    """
+    if rules.watches == WATCHES_EXPERT:
+        start = _integer(len(expert_path) - rules.moves + 1, agent.watching)
+        remember(agent, rules, expert_path, start, rules.moves)
+        return
+    ring, moves = other.trail, other.trail_moves[0]
+    if moves < rules.moves and other.shown_moves[0] > moves:
+        ring, moves = other.shown, other.shown_moves[0]
+    length = min(moves, rules.moves)
+    remember(agent, rules, ring, moves - length, length)
+
+
+@njit(cache=True)
+def _step_and_copy(world, agent, other, rules, expert_path):  # type: ignore[no-untyped-def]
+    arrived = step(world, agent, other, rules)
+    if arrived and rules.watches != WATCHES_NOBODY and agent.arrivals[0] % rules.every == 0:
+        _copy_moves(agent, other, rules, expert_path)
+
+
+@njit(cache=True)
+def best_path_length(world, agent, found):  # type: ignore[no-untyped-def]
+    """`greedy_path_length`; not walked again while every set that the last path rests on is the same."""
+    length = found.length[0]
+    unchanged = length > 0
+    for k in range(length):
+        unchanged &= agent.greedy[found.route[k]] == found.sets[k]
+    if unchanged:
+        return length
+    return _walk(world, agent, found)
+
+
+@njit(cache=True)
+def _walk(world, agent, found):  # type: ignore[no-untyped-def]
+    place, ties, length = np.int64(world.start), False, 0
+    while place != world.goal and length < len(found.route):
+        actions = agent.greedy[place]
+        found.route[length], found.sets[length] = place, actions
+        ties |= SIZE[actions] > 1
+        place = np.int64(world.neighbours[place * MOVES + _greedy(actions, found.stream)])
+        length += 1
+    found.length[0] = 0 if ties else length
+    return length
+
+
+@njit(cache=True)
+def _evaluate(world, agent, found, point):  # type: ignore[no-untyped-def]
+    if point < len(found.lengths):
+        found.lengths[point] = best_path_length(world, agent, found)
+
+
+@njit(cache=True, nogil=True)
+def run(world, one, two, rules, two_rules, found, two_found, expert_path, limits):  # type: ignore[no-untyped-def]
+    """Let `one`, and in turn `two` if it takes part, act until a limit; return the steps taken.
+
+    The best paths are looked for every `limits.every` steps while there is room for them.
+    """
+    point, due, taken = 0, limits.every, 0
+    while taken < limits.steps and one.arrivals[0] < limits.reachings:
+        _step_and_copy(world, one, two, rules, expert_path)
+        if limits.pair:
+            _step_and_copy(world, two, one, two_rules, expert_path)
+        taken += 1
+        if taken == due:
+            _evaluate(world, one, found, point)
+            _evaluate(world, two, two_found, point)
+            point += 1
+            due += limits.every
+    return taken
