@@ -36,6 +36,10 @@ class MotionSettings:
     astray_rad: float = math.radians(25.0)
     """A drive whose direction is this far off becomes a turn again."""
 
+    landing: float = 0.8
+    """Part of the remaining angle that a last period of turning covers. All of it would make the turn
+    oscillate if the true latency is shorter than the one above."""
+
     heading_gain_per_s: float = 4.0
     hold_heading_within_m: float = 0.03
     """This close to the target its direction is noise: the heading is held."""
@@ -122,8 +126,10 @@ class Motion:
             return self._settle(pose, t_ns)
         if self.phase is Phase.DRIVE and self._is_astray(ahead):
             self.phase = Phase.TURN
-        if self.phase is Phase.TURN and (turn_rad_per_s := self._turn(ahead)):
-            return self._command(0.0, turn_rad_per_s)
+        if self.phase is Phase.TURN and not self._is_there(ahead):
+            if turn_rad_per_s := self._turn(ahead):
+                return self._command(0.0, turn_rad_per_s)
+            self.phase = Phase.DRIVE
         if self.phase is Phase.DRIVE and (forward_m_per_s := self._drive(ahead)):
             return self._command(forward_m_per_s, self._correction_rad_per_s(ahead))
         self._rest(t_ns)
@@ -157,13 +163,12 @@ class Motion:
         )
 
     def _turn(self, ahead: Pose) -> float:
-        """Turning speed towards the target; 0 when the robot is aligned, and may drive if it has a place."""
+        """Turning speed towards the target; 0 when the robot is aligned with its place and may drive."""
         settings = self._settings
         if self._place is not None:
             self._heading_rad = self._direction_rad(ahead, self._place)
         error_rad = wrap_angle_rad(self._heading_rad - ahead.theta_rad)
-        if abs(error_rad) <= (settings.aligned_rad if self._place else settings.tolerance_rad):
-            self.phase = Phase.DRIVE if self._place else Phase.SETTLE
+        if self._place is not None and abs(error_rad) <= settings.aligned_rad:
             return 0.0
         return _approach_speed(
             error_rad,
@@ -171,6 +176,7 @@ class Motion:
             settings.turn_speed_rad_per_s,
             settings.turn_acceleration_rad_per_s2,
             settings.period_s,
+            settings.landing,
         )
 
     def _direction_rad(self, ahead: Pose, place: tuple[float, float]) -> float:
@@ -229,14 +235,17 @@ class Motion:
         return math.hypot(self._place[0] - pose.x_m, self._place[1] - pose.y_m) <= self._settings.tolerance_m
 
 
-def _approach_speed(left: float, speed: float, fastest: float, acceleration: float, period_s: float) -> float:
+def _approach_speed(
+    left: float, speed: float, fastest: float, acceleration: float, period_s: float, landing: float = 1.0
+) -> float:
     """The speed with which to cover the signed distance `left` (m or rad), now moving with `speed`.
 
     Slowing by at most `acceleration` from period to period, a speed v needs v^2 / 2a + v T / 2 to end; this
-    is the discrete form of braking by sqrt(2 a d). The last period covers exactly what is left.
+    is the discrete form of braking by sqrt(2 a d). The last period covers the part `landing` of what is left.
     """
     distance = abs(left)
     per_period = acceleration * period_s
     braking = math.sqrt(0.25 * per_period * per_period + 2.0 * acceleration * distance) - 0.5 * per_period
-    gathered = max(0.0, math.copysign(speed, left * speed)) + per_period if speed else per_period
-    return math.copysign(min(fastest, gathered, braking, distance / period_s), left)
+    towards = speed if left > 0.0 else -speed
+    gathered = max(towards, 0.0) + per_period
+    return math.copysign(min(fastest, gathered, braking, landing * distance / period_s), left)
