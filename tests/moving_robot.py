@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from robot_agent.drivers.body import WheelSpeeds
 from robot_agent.drivers.epuck import EpuckGeometry
 from robot_agent.drivers.sim import BodyFaults, SimulatedBody
 from robot_agent.motion import Motion, MotionSettings
@@ -87,16 +88,17 @@ class MovingRobot:
         self.t_ns = TICK_NS
         self.stalled_ticks = 0
 
-    def tick(self) -> None:
-        """One control period: observe, then act."""
+    def tick(self) -> WheelSpeeds:
+        """One control period: observe, then act. Returns the wheel speeds sent."""
         fixes = self.tracker.fixes(self.body.truth, self.t_ns)
         self.estimator.odometry(self.body.wheel_steps(self.t_ns), self.t_ns)
         for pose, t_ns in fixes:
             self.estimator.fix(pose, t_ns)
         estimate, age_s = self.estimator.pose(self.t_ns), self.estimator.age_s(self.t_ns)
-        self.body.drive(self.motion.step(estimate, self.t_ns, age_s), self.t_ns)
+        sent = self.body.drive(self.motion.step(estimate, self.t_ns, age_s), self.t_ns)
         self.stalled_ticks += self.motion.stalled
         self.t_ns += TICK_NS
+        return sent
 
     def drive_to(self, x_m: float, y_m: float, ticks: int = 1000) -> tuple[float, float]:
         """Go to a place; return how long it took (s) and how far off the robot stands (m).

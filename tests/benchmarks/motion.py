@@ -97,9 +97,7 @@ def main() -> None:
         "tracker_37_ms_before_the_tick": moves(MovingRobot(2, None, TrackerFaults(early_s=0.037)), 2),
         "latency_unknown_120_ms": moves(MovingRobot(3, BodyFaults(latency_s=0.12)), 3),
         "lost_every_15_s": moves(MovingRobot(4, None, OFTEN_LOST), 4),
-        "lost_every_15_s_no_stop": moves(
-            MovingRobot(4, None, OFTEN_LOST, MotionSettings(stale_pose_s=5.0)), 4
-        ),
+        "lost_every_15_s_drive_on": moves(MovingRobot(4, None, OFTEN_LOST, DRIVE_ON), 4),
         "slip_x3_gain_4_percent_tracker_x3": moves(MovingRobot(5, HARD_BODY, HARD_TRACKER), 5),
         "drive_back": drives_back(6),
         "layer_us_per_tick": layer_costs_us(7),
