@@ -1,0 +1,5 @@
+"""`python -m robot_agent`."""
+
+from robot_agent.main import main
+
+main()

@@ -1,0 +1,203 @@
+"""The agent's loop: observe, decide, act, learn, report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from robot_agent.brain import Brain, Transition
+from robot_agent.checkpoint import Checkpoint
+from robot_agent.drivers.body import Body, WheelSpeeds
+from robot_agent.inbox import AgentInbox
+from robot_agent.motion import Motion
+from robot_agent.pose import PoseEstimator
+from robot_agent.reports import Reporter
+from swarm.clock import NS_PER_S
+from swarm.errors import UserError
+from swarm.geometry import Compartment, Pose
+
+
+class Activity(Enum):
+    """What the robot is about."""
+
+    WAITING = "waiting"
+    """For a pose, for the run, or for its turn to go on."""
+    RETURNING = "returning"
+    """Driving to the start cell, or back to the cell that it stood in."""
+    DECIDING = "deciding"
+    """Standing in a cell's centre."""
+    MOVING = "moving"
+    BLOCKED = "blocked"
+    """Standing out a move into a wall."""
+    FINISHED = "finished"
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What one tick shows: the time, the robot's own pose, and how old the fix under it is."""
+
+    t_ns: int
+    pose: Pose | None
+    pose_age_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A decision under way."""
+
+    state: int
+    action: int
+    next_state: int
+    blocked: bool
+    t_ns: int
+
+
+class Agent:
+    """One robot. Everything that it works with is handed to it."""
+
+    def __init__(
+        self,
+        compartment: Compartment,
+        brain: Brain,
+        body: Body,
+        estimator: PoseEstimator,
+        motion: Motion,
+        inbox: AgentInbox,
+        reporter: Reporter,
+        blocked_move_s: float,
+    ) -> None:
+        self.activity = Activity.WAITING
+        self.state = compartment.grid.start
+        """The cell that the robot stands in or is leaving."""
+        self.brain = brain
+        self.body = body
+        self._compartment = compartment
+        self._estimator = estimator
+        self._motion = motion
+        self._inbox = inbox
+        self._reporter = reporter
+        self._blocked_move_ns = round(blocked_move_s * NS_PER_S)
+        self._choice: Choice | None = None
+        self._lost = False
+        self._checkpoint: Checkpoint | None = None
+
+    def step(self, t_ns: int) -> None:
+        """One tick."""
+        seen = self.observe(t_ns)
+        self.decide(seen)
+        sent = self.act(seen)
+        self.learn(seen)
+        self.report(seen, sent)
+
+    def observe(self, t_ns: int) -> Seen:
+        """Wheel steps and tracker fixes into one estimate of the robot's own pose."""
+        self._inbox.poll(t_ns)
+        self._estimator.odometry(self.body.wheel_steps(t_ns), t_ns)
+        for pose, captured_t_ns in self._inbox.fixes():
+            self._estimator.fix(pose, captured_t_ns)
+        if self._estimator.displaced:
+            self._displaced()
+        return Seen(t_ns, self._estimator.pose(t_ns), self._estimator.age_s(t_ns))
+
+    def decide(self, seen: Seen) -> None:
+        """Algorithm 3's choice, when the robot stands in a cell's centre and the run is on."""
+        if self._inbox.stopped or self.brain.finished:
+            self._stand(Activity.FINISHED if self.brain.finished else Activity.WAITING)
+        elif self.activity is Activity.WAITING and seen.pose and self._inbox.running(seen.t_ns):
+            self._go_to(self._cell_to_go_on_from(seen.pose), Activity.RETURNING)
+        elif self.activity is Activity.DECIDING and self._inbox.running(seen.t_ns):
+            self._begin(self.brain.choose(self.state), seen.t_ns)
+
+    def act(self, seen: Seen) -> WheelSpeeds:
+        """Drive as the motion says; what was really sent comes back."""
+        speeds = self._motion.step(seen.pose, seen.t_ns, seen.pose_age_s)
+        return self.body.drive(speeds, seen.t_ns)
+
+    def learn(self, seen: Seen) -> None:
+        """Eq. 7 on arrival; from the goal the robot drives back to the start."""
+        if self.activity is Activity.RETURNING and self._motion.arrived:
+            self.activity = Activity.DECIDING
+        elif self._choice and self._has_ended(self._choice, seen.t_ns):
+            choice, self._choice = self._choice, None
+            duration_s = (seen.t_ns - choice.t_ns) / NS_PER_S
+            self.state = choice.next_state
+            self.brain.learn(
+                Transition(choice.state, choice.action, choice.next_state, duration_s, choice.blocked)
+            )
+            self.activity = Activity.DECIDING
+            self._save()
+            if self.state == self._compartment.grid.goal:
+                self._go_to(self._compartment.grid.start, Activity.RETURNING)
+
+    def report(self, seen: Seen, sent: WheelSpeeds) -> None:
+        """The command as sent at every tick, the status once a second."""
+        self._reporter.command(sent, seen.pose)
+        self._reporter.status(seen.t_ns, self.activity.value, self.brain, seen.pose_age_s, self._inbox.bad)
+
+    def resume_from(self, checkpoint: Checkpoint | None) -> None:
+        """Keep the checkpoint up to date after every move, and go on from it if it has something."""
+        self._checkpoint = checkpoint
+        saved = checkpoint.load() if checkpoint else None
+        if checkpoint and saved:
+            try:
+                self.brain.restore(saved["brain"])
+                self.state = int(saved["state"])
+            except (KeyError, TypeError, ValueError) as error:
+                raise UserError(f"{checkpoint.path}: does not fit this experiment ({error})") from error
+
+    def stop(self) -> None:
+        """Motors off, for good."""
+        self._motion.stop()
+        self.body.close()
+
+    def _begin(self, action: int, t_ns: int) -> None:
+        entered = self._compartment.grid.neighbour(self.state, action)
+        blocked = entered is None
+        self._choice = Choice(self.state, action, self.state if entered is None else entered, blocked, t_ns)
+        if blocked:
+            self.activity = Activity.BLOCKED
+        else:
+            self._go_to(self._choice.next_state, Activity.MOVING, leaving=self.state)
+
+    def _go_to(self, state: int, activity: Activity, leaving: int | None = None) -> None:
+        self.state = state if leaving is None else leaving
+        self.activity = activity
+        self._motion.go_to(*self._compartment.centre(state))
+
+    def _has_ended(self, choice: Choice, t_ns: int) -> bool:
+        if choice.blocked:
+            return t_ns - choice.t_ns >= self._blocked_move_ns
+        return self._motion.arrived
+
+    def _stand(self, activity: Activity) -> None:
+        self._motion.stop()
+        if self._choice:
+            self._abandon_choice()
+        self.activity = activity
+
+    def _displaced(self) -> None:
+        """Somebody carried the robot: nothing is learnt, and it goes on from the cell where it is now."""
+        self._estimator.reset()
+        self._stand(Activity.WAITING)
+        self._lost = True
+        self._reporter.event("displaced", f"carried away from cell {self.state}; the move is not learnt from")
+
+    def _cell_to_go_on_from(self, pose: Pose) -> int:
+        """The cell that it was to stand in, or after it was carried away the one where it is."""
+        if not self._lost:
+            return self.state
+        self._lost = False
+        state = self._compartment.state_at(pose.x_m, pose.y_m)
+        grid = self._compartment.grid
+        return grid.start if state is None or state == grid.goal else state
+
+    def _save(self) -> None:
+        """Once a move: a killed agent loses only the move that it was making."""
+        if self._checkpoint:
+            at_goal = self.state == self._compartment.grid.goal
+            state = self._compartment.grid.start if at_goal else self.state
+            self._checkpoint.save({"state": state, "brain": self.brain.snapshot()})
+
+    def _abandon_choice(self) -> None:
+        self._choice = None
+        self.brain.abandon()

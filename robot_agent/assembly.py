@@ -1,0 +1,92 @@
+"""Puts one robot together from the experiment's settings: the only place that knows every part."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from robot_agent.agent import Agent
+from robot_agent.brain import Brain, Publish
+from robot_agent.drivers.body import Body
+from robot_agent.drivers.epuck import EpuckGeometry
+from robot_agent.drivers.sim import BodyFaults, SimulatedBody
+from robot_agent.drivers.sim_robot import SimulatedRobot
+from robot_agent.expert import Expert
+from robot_agent.inbox import AgentInbox
+from robot_agent.learner import Learner
+from robot_agent.motion import Motion, MotionSettings
+from robot_agent.pose import PoseEstimator
+from robot_agent.reports import Reporter
+from swarm.experiment import Experiment, RobotSettings, Role
+from swarm.geometry import Pose
+from swarm.learning.controller import Controller
+from swarm.learning.memory import ImitationMemory
+from swarm.learning.q_table import QTable
+from swarm.learning.random import spawned_generator
+from swarm.link import Link
+
+
+class Assembly:
+    """Makes the agents of one process for one trial."""
+
+    def __init__(self, experiment: Experiment, link: Link, seed: int, trial: int) -> None:
+        self._experiment = experiment
+        self._link = link
+        self._seed = seed
+        self._trial = trial
+
+    def agent(self, name: str) -> Agent:
+        """The agent of the robot with this id."""
+        settings, robot = self._experiment, self._experiment.robot_named(name)
+        geometry = EpuckGeometry()
+        publish = partial(self._publish, name)
+        motion = MotionSettings(period_s=settings.simulation.tick_s)
+        return Agent(
+            settings.compartment(robot),
+            self._brain(robot, publish),
+            self._body(robot, geometry),
+            PoseEstimator(geometry),
+            Motion(motion, geometry),
+            AgentInbox(self._link, name),
+            Reporter(publish),
+            settings.learning.blocked_move_s,
+        )
+
+    def _publish(self, robot: str, topic: object, message: object) -> None:
+        self._link.publish(topic, message, robot)  # type: ignore[arg-type]
+
+    def _brain(self, robot: RobotSettings, publish: Publish) -> Brain:
+        grid = self._experiment.compartment(robot).grid
+        if robot.role is Role.EXPERT:
+            return Expert(grid, publish)
+        rules = self._experiment.learning
+        memory = ImitationMemory(rules.beta, rules.approach, rules.capacity)
+        controller = Controller(
+            QTable(grid.states), memory, rules.epsilon, self._generator(robot, "controller")
+        )
+        learner = Learner(
+            grid,
+            controller,
+            self._generator(robot, "evaluation"),
+            publish,
+            moves_to_make=self._experiment.run.moves,
+            path_length_cap=rules.path_length_cap,
+            discount_rate_per_s=rules.discount_rate_per_s,
+        )
+        for path in robot.given_paths():
+            learner.remember(path, "given")
+        return learner
+
+    def _body(self, robot: RobotSettings, geometry: EpuckGeometry) -> Body:
+        faults = self._experiment.body
+        compartment = self._experiment.compartment(robot)
+        body = SimulatedBody(
+            geometry,
+            BodyFaults(faults.slip_sd, faults.gain_error_sd, faults.latency_s),
+            Pose(*compartment.centre(compartment.grid.start), 0.0),
+            compartment,
+            self._generator(robot, "body"),
+        )
+        return SimulatedRobot(body, self._link, robot.id)
+
+    def _generator(self, robot: RobotSettings, component: str):  # type: ignore[no-untyped-def]
+        return spawned_generator(self._seed, robot.group, self._trial, robot.id, component)

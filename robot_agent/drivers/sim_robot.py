@@ -1,0 +1,45 @@
+"""The `sim` driver: a simulated e-puck that shows the simulated tracker where it really is.
+
+It is a body like any other: the agent cannot tell. A hand that carries a real robot is a `carry`
+message here.
+"""
+
+from __future__ import annotations
+
+from robot_agent.drivers.body import WheelSpeeds, WheelSteps
+from robot_agent.drivers.sim import SimulatedBody
+from swarm import keys
+from swarm.geometry import Pose
+from swarm.link import Link
+from swarm.messages import swarm_pb2 as pb
+
+
+class SimulatedRobot:
+    """A simulated body that publishes its truth whenever its wheels are read: once a tick."""
+
+    def __init__(self, body: SimulatedBody, link: Link, robot: str) -> None:
+        self.body = body
+        self._link = link
+        self._robot = robot
+        self._carries = link.subscribe(keys.CARRY, robot)
+
+    def drive(self, speeds: WheelSpeeds, t_ns: int) -> WheelSpeeds:
+        return self.body.drive(speeds, t_ns)
+
+    def wheel_steps(self, t_ns: int) -> WheelSteps:
+        steps = self.body.wheel_steps(t_ns)
+        for carry in self._carries.take():
+            to = carry.message
+            self.body.place(Pose(to.x_m, to.y_m, to.theta_rad))
+        truth = self.body.truth(t_ns)
+        self._link.publish(
+            keys.TRUTH,
+            pb.Truth(
+                x_m=truth.x_m, y_m=truth.y_m, theta_rad=truth.theta_rad, wall_contacts=self.body.contacts
+            ),
+            self._robot,
+        )
+        return steps
+
+    def close(self) -> None:
+        self.body.close()

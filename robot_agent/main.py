@@ -1,0 +1,79 @@
+"""The `robot-agent` command: one process on a robot's board, or one that hosts simulated robots."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from robot_agent.agent import Agent
+from robot_agent.assembly import Assembly
+from robot_agent.checkpoint import Checkpoint
+from swarm.cli.main import guarded
+from swarm.errors import UserError, nearest
+from swarm.experiment import Experiment
+from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals
+
+
+def main() -> None:
+    """Entry point of `robot-agent`."""
+    sys.exit(guarded(lambda: run(_parser().parse_args())))
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Join the swarm and step the robots until the run ends or the process is told to leave."""
+    experiment = Experiment.load(arguments.experiment)
+    names = _names(arguments.robot, experiment)
+    seed = experiment.run.seed if arguments.seed is None else arguments.seed
+    leave_on_signals()
+    with joined(arguments, "robot", names, experiment.simulation.tick_s) as link:
+        assembly = Assembly(experiment, link, seed, arguments.trial)
+        agents = [assembly.agent(name) for name in names]
+        checkpoints = _checkpoints(arguments.state, names)
+        for agent, checkpoint in zip(agents, checkpoints, strict=True):
+            agent.resume_from(checkpoint)
+        try:
+            for t_ns in link.ticks():
+                for agent in agents:
+                    agent.step(t_ns)
+        finally:
+            _stop(agents)
+
+
+def _stop(agents: list[Agent]) -> None:
+    for agent in agents:
+        agent.stop()
+
+
+def _names(wanted: str, experiment: Experiment) -> list[str]:
+    known = [robot.id for robot in experiment.robot]
+    names = wanted.split(",") if wanted else []
+    for name in names:
+        if name not in known:
+            raise UserError(f"--robot {name!r} is not in the experiment; {nearest(name, known)}")
+    if not names:
+        raise UserError(f"--robot is missing: say which robot this is; known: {', '.join(known)}")
+    return names
+
+
+def _checkpoints(directory: Path | None, names: list[str]) -> list[Checkpoint | None]:
+    return [Checkpoint(directory, name) if directory else None for name in names]
+
+
+def _parser() -> OneLineParser:
+    parser = OneLineParser(
+        prog="robot-agent",
+        description="The process on a robot's board: it finds out where the robot is, decides, drives and learns. "
+        "Start the swarm server and the tracker bridge first or later: the agent waits for them.",
+    )
+    add_common_arguments(parser)
+    parser.add_argument(
+        "--robot", default="", metavar="ID[,ID...]", help="which robot of the experiment this is"
+    )
+    parser.add_argument(
+        "--state",
+        type=Path,
+        metavar="DIR",
+        help="keep what was learnt here, and go on from it after a restart",
+    )
+    return parser

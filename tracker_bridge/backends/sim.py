@@ -1,0 +1,84 @@
+"""The simulated tracking system: the truth at a rate, with noise, lateness and losses."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from swarm.clock import NS_PER_S
+from swarm.experiment import TrackerSettings
+from swarm.feed import Received
+from swarm.geometry import Pose, wrap_angle_rad
+from swarm.messages import swarm_pb2 as pb
+from tracker_bridge.backends.backend import TrackedPose
+
+SECONDS_PER_HOUR = 3600.0
+
+
+class _SimulatedView:
+    """One robot in the view of the cameras: when it is measured next and until when it is lost."""
+
+    def __init__(self, settings: TrackerSettings, rng: np.random.Generator) -> None:
+        self._settings = settings
+        self._rng = rng
+        self._period_ns = round(NS_PER_S / settings.rate_hz)
+        self._due_ns = 0
+        self._lost_until_ns = 0
+
+    def measure(self, truth: pb.Truth, t_ns: int) -> Pose | None:
+        """The noisy pose, or None between two frames and while the robot is lost."""
+        if t_ns < self._due_ns:
+            return None
+        self._due_ns += self._period_ns * (1 + (t_ns - self._due_ns) // self._period_ns)
+        settings = self._settings
+        x_noise, y_noise, theta_noise = self._rng.standard_normal(3).tolist()
+        loss, blackout = self._rng.random(2).tolist()
+        if blackout < settings.blackouts_per_hour / SECONDS_PER_HOUR / settings.rate_hz:
+            self._lost_until_ns = t_ns + round(settings.blackout_s * NS_PER_S)
+        if loss < settings.loss or t_ns < self._lost_until_ns:
+            return None
+        return Pose(
+            truth.x_m + settings.noise_m * x_noise,
+            truth.y_m + settings.noise_m * y_noise,
+            wrap_angle_rad(truth.theta_rad + settings.noise_rad * theta_noise),
+        )
+
+
+class SimulatedTracker:
+    """Measures the simulated truth; `truths` gives what has arrived of it since the last call.
+
+    Each robot has a random generator of its own (`generator` makes it), so that one robot's poses do
+    not depend on the others.
+    """
+
+    def __init__(
+        self,
+        settings: TrackerSettings,
+        truths: Callable[[], Iterable[Received[pb.Truth]]],
+        generator: Callable[[str], np.random.Generator],
+    ) -> None:
+        self._settings = settings
+        self._truths = truths
+        self._generator = generator
+        self._views: dict[str, _SimulatedView] = {}
+        self._under_way: list[tuple[int, str, TrackedPose]] = []
+        self._latency_ns = round(settings.latency_s * NS_PER_S)
+
+    def poses(self, t_ns: int) -> list[TrackedPose]:
+        for received in self._truths():
+            captured_t_ns = received.header.t_ns
+            pose = self._view(received.robot).measure(received.message, captured_t_ns)
+            if pose:
+                tracked = TrackedPose(received.robot, pose, captured_t_ns)
+                heapq.heappush(self._under_way, (captured_t_ns, received.robot, tracked))
+        ready = []
+        while self._under_way and self._under_way[0][0] + self._latency_ns <= t_ns:
+            ready.append(heapq.heappop(self._under_way)[2])
+        return ready
+
+    def _view(self, robot: str) -> _SimulatedView:
+        if robot not in self._views:
+            self._views[robot] = _SimulatedView(self._settings, self._generator(robot))
+        return self._views[robot]
