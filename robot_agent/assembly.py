@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
+from typing import Any
+
+import numpy as np
+from google.protobuf.message import Message
 
 from robot_agent.agent import Agent
 from robot_agent.brain import Brain, Publish
@@ -18,6 +21,7 @@ from robot_agent.pose import PoseEstimator
 from robot_agent.reports import Reporter
 from swarm.experiment import Experiment, RobotSettings, Role
 from swarm.geometry import Pose
+from swarm.keys import Topic
 from swarm.learning.controller import Controller
 from swarm.learning.memory import ImitationMemory
 from swarm.learning.q_table import QTable
@@ -38,7 +42,10 @@ class Assembly:
         """The agent of the robot with this id."""
         settings, robot = self._experiment, self._experiment.robot_named(name)
         geometry = EpuckGeometry()
-        publish = partial(self._publish, name)
+
+        def publish(topic: Topic[Any], message: Message) -> None:
+            self._link.publish(topic, message, name)
+
         motion = MotionSettings(period_s=settings.simulation.tick_s)
         return Agent(
             settings.compartment(robot),
@@ -50,9 +57,6 @@ class Assembly:
             Reporter(publish),
             settings.learning.blocked_move_s,
         )
-
-    def _publish(self, robot: str, topic: object, message: object) -> None:
-        self._link.publish(topic, message, robot)  # type: ignore[arg-type]
 
     def _brain(self, robot: RobotSettings, publish: Publish) -> Brain:
         grid = self._experiment.compartment(robot).grid
@@ -88,5 +92,5 @@ class Assembly:
         )
         return SimulatedRobot(body, self._link, robot.id)
 
-    def _generator(self, robot: RobotSettings, component: str):  # type: ignore[no-untyped-def]
+    def _generator(self, robot: RobotSettings, component: str) -> np.random.Generator:
         return spawned_generator(self._seed, robot.group, self._trial, robot.id, component)

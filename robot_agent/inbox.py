@@ -16,7 +16,7 @@ CONDUCTOR_SILENT_S = 5.0
 class AgentInbox:
     """The three feeds of one robot.
 
-    A robot goes on only while it hears the run's state: without a word for 5 s it finishes its move and waits.
+    A robot goes on only while it hears the run's state: after 5 s without it finishes its move and waits.
     """
 
     def __init__(self, link: Link, robot: str) -> None:

@@ -9,9 +9,9 @@ from pathlib import Path
 from robot_agent.agent import Agent
 from robot_agent.assembly import Assembly
 from robot_agent.checkpoint import Checkpoint
-from swarm.cli.main import guarded
 from swarm.errors import UserError, nearest
 from swarm.experiment import Experiment
+from swarm.guard import guarded
 from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals
 
 
@@ -63,17 +63,15 @@ def _checkpoints(directory: Path | None, names: list[str]) -> list[Checkpoint | 
 def _parser() -> OneLineParser:
     parser = OneLineParser(
         prog="robot-agent",
-        description="The process on a robot's board: it finds out where the robot is, decides, drives and learns. "
-        "Start the swarm server and the tracker bridge first or later: the agent waits for them.",
+        description="The process on a robot's board: it finds out where the robot is, decides, drives and "
+        "learns. Start the swarm server and the tracker bridge first or later: the agent waits for them.",
     )
     add_common_arguments(parser)
-    parser.add_argument(
-        "--robot", default="", metavar="ID[,ID...]", help="which robot of the experiment this is"
-    )
+    parser.add_argument("--robot", default="", metavar="ID[,ID...]", help="which robot this is")
     parser.add_argument(
         "--state",
         type=Path,
         metavar="DIR",
-        help="keep what was learnt here, and go on from it after a restart",
+        help="keep what was learnt here; go on from it after a restart",
     )
     return parser

@@ -50,6 +50,6 @@ class Reporter:
             ),
         )
 
-    def event(self, name: str, text: str, level: pb.Event.Level = pb.Event.WARNING) -> None:
+    def event(self, name: str, text: str, level: pb.Event.Level.ValueType = pb.Event.WARNING) -> None:
         """Something that a person should be able to read in the log."""
         self._publish(keys.EVENT, pb.Event(level=level, name=name, text=text))
