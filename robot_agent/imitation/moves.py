@@ -29,7 +29,9 @@ PASSED_CHI2 = 1.0
 STAY_CHI2 = 2.0
 """Price of a drive that led nowhere."""
 SKIP_CHI2 = 10.0
-"""Price of a corner that was none, such as a false stop between two cells."""
+"""Price of a stop that was none, such as a slow moment between two cells."""
+BEND_CHI2 = 3.0
+"""Price of a corner without a stop; to skip such a corner is free."""
 BEAM = 32
 
 HEADINGS = np.append(np.repeat(np.arange(MOVES), MOST_CELLS), 0)
@@ -91,7 +93,8 @@ def _extend(beam: _Beam, vertex: Vertex, cell_m: float) -> _Beam:
     weight = np.linalg.inv(predicted_m2 + vertex.covariance_m2 + STOP_SD_M**2 * np.eye(2))
     surprise_m = (vertex.xy_m - beam.driven_m - beam.offset_m)[:, None] - cell_m * OPTIONS_CELLS
     distances = np.einsum("hoi,hij,hoj->ho", surprise_m, weight, surprise_m)
-    costs = (beam.chi2[:, None] + distances + OPTIONS_CHI2).ravel()
+    price = 0.0 if vertex.stopped else BEND_CHI2
+    costs = (beam.chi2[:, None] + distances + OPTIONS_CHI2 + price).ravel()
     best = np.argsort(costs, kind="stable")[:BEAM]
     parent, option = np.divmod(best, len(CELLS))
     gain = predicted_m2 @ weight
@@ -102,14 +105,14 @@ def _extend(beam: _Beam, vertex: Vertex, cell_m: float) -> _Beam:
         beam.offset_m[parent] + np.einsum("hij,hj->hi", gain[parent], surprise_m[parent, option]),
         (predicted_m2 - gain @ predicted_m2)[parent],
     )
-    return _best(read, _skip(beam, predicted_m2))
+    return _best(read, _skip(beam, predicted_m2, SKIP_CHI2 if vertex.stopped else 0.0))
 
 
-def _skip(beam: _Beam, predicted_m2: Floats) -> _Beam:
+def _skip(beam: _Beam, predicted_m2: Floats, price: float) -> _Beam:
     """Every hypothesis that the corner is none: nothing is learnt from it."""
     skipped = np.full(len(beam.chi2), SKIP)
     choices = np.column_stack((beam.choices, skipped))
-    return _Beam(beam.chi2 + SKIP_CHI2, choices, beam.driven_m, beam.offset_m, predicted_m2)
+    return _Beam(beam.chi2 + price, choices, beam.driven_m, beam.offset_m, predicted_m2)
 
 
 def _best(one: _Beam, other: _Beam) -> _Beam:

@@ -14,9 +14,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from robot_agent.imitation.sightings import Floats
 from robot_agent.imitation.smoothing import Smoothed
 
-REST_SPEED_M_S = 0.045
+REST_SPEED_M_S = 0.05
 BLIP_CELLS = 0.4
 """A drive shorter than this is noise: 5 cm in cells of 12 cm."""
 LONG_REST_S = 1.2
@@ -40,15 +41,29 @@ class Rest:
     def is_long(self, smoothed: Smoothed) -> bool:
         return self.duration_s(smoothed) >= LONG_REST_S
 
+    def place_m(self, smoothed: Smoothed) -> Floats:
+        """The mean of the positions at rest; a blip in between does not count."""
+        seen = slice(self.first, self.last + 1)
+        standing = smoothed.speed_m_s[seen] <= REST_SPEED_M_S
+        mean: Floats = smoothed.xy_m[seen][standing].mean(axis=0)
+        return mean
+
 
 def find_rests(smoothed: Smoothed, cell_m: float) -> list[Rest]:
     """Every stop in the order of time; a drive that the first or the last frame cuts has no rest there."""
-    moving = smoothed.speed_m_s > REST_SPEED_M_S
-    for first, last in _runs(moving):
-        before, after = max(first - 1, 0), min(last + 1, len(moving) - 1)
-        if math.dist(smoothed.xy_m[before], smoothed.xy_m[after]) < BLIP_CELLS * cell_m:
-            moving[first : last + 1] = False
-    return [Rest(first, last) for first, last in _runs(~moving)]
+    rests: list[Rest] = []
+    for first, last in _runs(smoothed.speed_m_s <= REST_SPEED_M_S):
+        rest = Rest(first, last)
+        if rests and _is_blip(smoothed, rests[-1], rest, cell_m):
+            rests[-1] = Rest(rests[-1].first, last)
+        else:
+            rests.append(rest)
+    return rests
+
+
+def _is_blip(smoothed: Smoothed, before: Rest, after: Rest, cell_m: float) -> bool:
+    """Whether what looked like a drive led nowhere."""
+    return math.dist(before.place_m(smoothed), after.place_m(smoothed)) < BLIP_CELLS * cell_m
 
 
 def _runs(chosen: NDArray[np.bool_]) -> list[tuple[int, int]]:

@@ -46,6 +46,8 @@ class Vertex:
     covariance_m2: Floats  # [2, 2]
     t_first_ns: int
     t_last_ns: int
+    stopped: bool = True
+    """Whether it stopped there; a mere bend of the smoothed way may be none of the demonstrator's."""
 
 
 def find_vertices(
@@ -55,7 +57,7 @@ def find_vertices(
     vertices = [_vertex(sightings, smoothed, rest) for rest in rests[:1]]
     for before, after in pairwise(rests):
         bends = _bends(sightings, smoothed, before.last, after.first, BEND_CELLS * cell_m)
-        vertices += [_vertex(sightings, smoothed, Rest(bend, bend)) for bend in bends]
+        vertices += [_bend_vertex(sightings, smoothed, bend) for bend in bends]
         vertices.append(_vertex(sightings, smoothed, after))
     return vertices
 
@@ -65,11 +67,17 @@ def _vertex(sightings: Sightings, smoothed: Smoothed, rest: Rest) -> Vertex:
     middle = (rest.first + rest.last + 1) // 2
     frozen_m2 = FROZEN_SHARE * sightings.covariance_m2[seen].mean(axis=0)
     return Vertex(
-        smoothed.xy_m[seen].mean(axis=0),
+        rest.place_m(smoothed),
         smoothed.covariance[middle, :2, :2] + frozen_m2,
         int(sightings.t_ns[rest.first]),
         int(sightings.t_ns[rest.last]),
     )
+
+
+def _bend_vertex(sightings: Sightings, smoothed: Smoothed, bend: int) -> Vertex:
+    covariance_m2 = smoothed.covariance[bend, :2, :2] + FROZEN_SHARE * sightings.covariance_m2[bend]
+    t_ns = int(sightings.t_ns[bend])
+    return Vertex(smoothed.xy_m[bend], covariance_m2, t_ns, t_ns, stopped=False)
 
 
 def _bends(sightings: Sightings, smoothed: Smoothed, start: int, end: int, least_m: float) -> list[int]:
