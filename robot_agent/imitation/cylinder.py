@@ -8,9 +8,10 @@ anywhere in the view. (width = f w / d holds on the camera's axis only.)
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
+Covariance: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
+"""Of (range, bearing), in metres and radians."""
 
 SKIRT_RADIUS_M = 0.0355
 SKIRT_BOTTOM_M = 0.004
@@ -30,11 +31,25 @@ def half_angle_rad(range_m: float, radius_m: float = SKIRT_RADIUS_M) -> float:
     return math.asin(min(1.0, radius_m / range_m))
 
 
-def covariance(range_m: float, edge_sd_rad: float, bearing_sd_rad: float) -> NDArray[np.float64]:
-    """2 x 2 covariance of (range, bearing), metres and radians.
+def covariance(range_m: float, edge_sd_rad: float, mounting_sd_rad: float) -> Covariance:
+    """Of (range, bearing) when both edges are seen, each with its own independent error.
 
-    From d = R / sin(half): an edge error of s turns into a range error of s d^2 / (R sqrt 2), so the
-    standard deviation grows as k d^2. `bearing_sd_rad` is what the mounting adds to the bearing alone.
+    From d = R / sin(half): the range's standard deviation is d^2 times a constant, `edge_sd_rad` / (R sqrt 2).
+    `mounting_sd_rad` is what the camera's place on the robot adds to the bearing.
     """
     range_sd_m = edge_sd_rad / math.sqrt(2) * range_m**2 / SKIRT_RADIUS_M
-    return np.diag([range_sd_m**2, edge_sd_rad**2 / 2 + bearing_sd_rad**2])
+    return (range_sd_m**2, 0.0), (0.0, edge_sd_rad**2 / 2 + mounting_sd_rad**2)
+
+
+def covariance_of_one_edge(
+    range_m: float, range_sd_m: float, edge_sd_rad: float, mounting_sd_rad: float, side: int
+) -> Covariance:
+    """Of (range, bearing) when one edge (`side` 1: left, -1: right) is seen, and the range comes from the height.
+
+    The bearing is the edge's less `side` times asin(R / d): a robot thought too far is also thought too
+    close to that edge.
+    """
+    swing = side * SKIRT_RADIUS_M / range_m**2
+    bearing_variance = edge_sd_rad**2 + (swing * range_sd_m) ** 2 + mounting_sd_rad**2
+    shared = swing * range_sd_m**2
+    return (range_sd_m**2, shared), (shared, bearing_variance)

@@ -1,0 +1,81 @@
+"""The side edges of a skirt to a fraction of a pixel, in light rather than in the sensor's levels.
+
+The rows around the horizon, where the white wall is behind the skirt, are averaged into one profile across the
+image. An edge is where a sharp step between the plateaus on its two sides would hold as much light as
+the profile does: that place does not depend on how blurred the edge is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robot_agent.drivers.camera_formats import Words, word_colours
+from robot_agent.drivers.camera_model import CameraModel
+from robot_agent.imitation.colour import PALE, ColourTable
+from robot_agent.imitation.components import Blob
+
+REACH_PX = 3
+"""Half the window around an edge; more than the blur, so that it holds the whole step."""
+PLATEAU_PX = 5
+MIN_PALE = 0.6
+MIN_STEP = 0.03
+ROWS_UP_PART = 1 / 24
+ROWS_DOWN_PART = 1 / 64
+
+
+@dataclass(frozen=True)
+class Edges:
+    """Columns (fractions, pixel middles whole) of the two sides; None where a side is not against the wall."""
+
+    left: float | None
+    right: float | None
+
+
+class EdgeFinder:
+    """Finds the sides of a skirt in frames of one camera."""
+
+    def __init__(self, model: CameraModel, table: ColourTable) -> None:
+        self._model = model
+        self._light = (word_colours()[:, table.edge_channel] ** model.gamma).astype(np.float32)
+        self._pale = (table.kinds == PALE).astype(np.float32)
+
+    def find(self, words: Words, blob: Blob) -> Edges:
+        """The edges of a patch of skirt; its box may be wrong by two pixels."""
+        band = words[self._rows(blob)]
+        left = self._edge(band[:, : blob.left + blob.width // 2 + 1], blob.left)
+        mirrored = band[:, ::-1][:, : self._model.width - (blob.right - 1) + blob.width // 2]
+        right = self._edge(mirrored, self._model.width - blob.right)
+        return Edges(left, None if right is None else self._model.width - 1 - right)
+
+    def _rows(self, blob: Blob) -> slice:
+        """Rows that surely show skirt against wall: an even number, to treat the Bayer rows alike."""
+        horizon, high = self._model.horizon_row, self._model.height
+        first = max(blob.top + 1, round(horizon - high * ROWS_UP_PART))
+        last = min(blob.bottom - 1, round(horizon + high * ROWS_DOWN_PART) + 1)
+        if last - first < 2:
+            first, last = int(horizon), int(horizon) + 2
+        return slice(first, last - (last - first) % 2)
+
+    def _edge(self, band: Words, start: int) -> float | None:
+        """The left edge near column `start` of rows that end within the skirt."""
+        outside = slice(max(0, start - REACH_PX - PLATEAU_PX), start - REACH_PX)
+        if start - REACH_PX < 2:
+            return None
+        near = np.ascontiguousarray(band[:, outside.start : start + REACH_PX + PLATEAU_PX])
+        if self._pale[near[:, : outside.stop - outside.start]].mean() < MIN_PALE:
+            return None
+        profile = self._light[near].mean(axis=0)
+        return _step(profile, outside.stop - outside.start, outside.start)
+
+
+def _step(profile: NDArray[np.float32], first: int, offset: int) -> float | None:
+    """Where the profile steps down after its `first` samples (all outside); `offset` is the first's column."""
+    last = min(first + 2 * REACH_PX, profile.size - 1)
+    outer, inner = float(profile[:first].mean()), float(profile[last:].mean())
+    if outer - inner < MIN_STEP:
+        return None
+    lit = (float(profile[first:last].sum()) - inner * (last - first)) / (outer - inner)
+    return offset + first - 0.5 + lit
