@@ -32,10 +32,10 @@ from swarm.link import Link
 class Assembly:
     """Makes the agents of one process for one trial."""
 
-    def __init__(self, experiment: Experiment, link: Link, seed: int, trial: int) -> None:
+    def __init__(self, experiment: Experiment, link: Link, trial: int) -> None:
         self._experiment = experiment
         self._link = link
-        self._seed = seed
+        self._seed = experiment.run.seed
         self._trial = trial
 
     def agent(self, name: str) -> Agent:

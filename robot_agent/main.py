@@ -12,7 +12,7 @@ from robot_agent.checkpoint import Checkpoint
 from swarm.errors import UserError, nearest
 from swarm.experiment import Experiment
 from swarm.guard import guarded
-from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals
+from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals, load_experiment
 
 
 def main() -> None:
@@ -22,12 +22,11 @@ def main() -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and step the robots until the run ends or the process is told to leave."""
-    experiment = Experiment.load(arguments.experiment)
+    experiment = load_experiment(arguments)
     names = _names(arguments.robot, experiment)
-    seed = experiment.run.seed if arguments.seed is None else arguments.seed
     leave_on_signals()
     with joined(arguments, "robot", names, experiment.simulation.tick_s) as link:
-        assembly = Assembly(experiment, link, seed, arguments.trial)
+        assembly = Assembly(experiment, link, arguments.trial)
         agents = [assembly.agent(name) for name in names]
         checkpoints = _checkpoints(arguments.state, names)
         for agent, checkpoint in zip(agents, checkpoints, strict=True):

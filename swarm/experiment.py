@@ -6,7 +6,7 @@ one id or compartments that overlap.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
 from typing import Annotated
@@ -143,6 +143,20 @@ class Experiment:
         experiment = file.settings(cls)
         _check(experiment, file)
         return experiment
+
+    def changed(
+        self, seed: int | None = None, moves: int | None = None, processes: int | None = None
+    ) -> Experiment:
+        """The same experiment with what a command line gave in place of the file's values."""
+        run = replace(
+            self.run,
+            seed=self.run.seed if seed is None else seed,
+            moves=self.run.moves if moves is None else moves,
+        )
+        simulation = self.simulation
+        if processes is not None:
+            simulation = replace(simulation, processes=processes)
+        return replace(self, run=run, simulation=simulation)
 
     def compartment(self, robot: RobotSettings) -> Compartment:
         """The walled square that belongs to a robot."""

@@ -19,6 +19,7 @@ from typing import NoReturn
 from swarm.bus import Bus, BusSettings
 from swarm.clock import scaled_clock, unix_clock
 from swarm.errors import UserError
+from swarm.experiment import Experiment
 from swarm.link import Link, LiveLink
 from swarm.lockstep import EPOCH, LockstepLink
 from swarm.presence import Presence, claim
@@ -49,6 +50,12 @@ def add_common_arguments(parser: argparse.ArgumentParser) -> None:
     simulated.add_argument("--speed", type=float, default=1.0, help="how many times as fast as life")
     simulated.add_argument("--trial", type=int, default=0, help="the number of the trial, from 0")
     simulated.add_argument("--seed", type=int, default=None, help="in place of the experiment's")
+    simulated.add_argument("--moves", type=int, default=None, help="in place of the experiment's")
+
+
+def load_experiment(arguments: argparse.Namespace) -> Experiment:
+    """The experiment that the command line names, with what else it says."""
+    return Experiment.load(arguments.experiment).changed(seed=arguments.seed, moves=arguments.moves)
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from swarm.experiment import Experiment
 from swarm.guard import guarded
 from swarm.learning.random import spawned_generator
 from swarm.link import Link
-from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals
+from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals, load_experiment
 from tracker_bridge.backends.backend import Backend
 from tracker_bridge.backends.sim import SimulatedTracker
 from tracker_bridge.bridge import Bridge
@@ -27,12 +27,11 @@ def main() -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and pass poses on until the run ends or the process is told to leave."""
-    experiment = Experiment.load(arguments.experiment)
+    experiment = load_experiment(arguments)
     make_backend = _backend_named(experiment.tracker.backend)
-    seed = experiment.run.seed if arguments.seed is None else arguments.seed
     leave_on_signals()
     with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s) as link:
-        backend = make_backend(experiment, link, seed, arguments.trial)
+        backend = make_backend(experiment, link, arguments.trial)
         arena = experiment.arena
         gate = Gate(GateSettings(arena.width_m, arena.height_m))
         bridge = Bridge(backend, gate, link, [robot.id for robot in experiment.robot])
@@ -40,12 +39,12 @@ def run(arguments: argparse.Namespace) -> None:
             bridge.step(t_ns)
 
 
-MakeBackend = Callable[[Experiment, Link, int, int], Backend]
+MakeBackend = Callable[[Experiment, Link, int], Backend]
 
 
-def _simulated(experiment: Experiment, link: Link, seed: int, trial: int) -> Backend:
+def _simulated(experiment: Experiment, link: Link, trial: int) -> Backend:
     truths = link.subscribe(keys.TRUTH)
-    generator = partial(spawned_generator, seed, "", trial, component="tracker")
+    generator = partial(spawned_generator, experiment.run.seed, "", trial, component="tracker")
     return SimulatedTracker(experiment.tracker, truths.take, lambda robot: generator(robot=robot))
 
 

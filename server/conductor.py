@@ -1,0 +1,71 @@
+"""Runs one trial: tells everyone that it has begun, follows the learners, and ends it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from google.protobuf.message import Message
+
+from server.batch import Batch
+from swarm import keys
+from swarm.clock import NS_PER_S
+from swarm.experiment import Experiment
+from swarm.feed import Feed
+from swarm.keys import Topic, topic_of
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages.header import Header
+
+RUN_STATE_PERIOD_NS = NS_PER_S
+Publish = Callable[[Topic[Any], Message, str], None]
+
+
+class Conductor:
+    """Follows a trial from what is on the wire, and speaks to the robots by the same wire."""
+
+    def __init__(self, experiment: Experiment, trial: int, publish: Publish) -> None:
+        self._experiment = experiment
+        self._trial = trial
+        self._publish = publish
+        self._moves = Feed(keys.MOVE)
+        self._best_paths = Feed(keys.BEST_PATH)
+        self._feeds: dict[Topic[Any], Feed[Any]] = {keys.MOVE: self._moves, keys.BEST_PATH: self._best_paths}
+        self._state_due_ns = 0
+        self._ending = False
+        self.moves = {robot.id: 0 for robot in experiment.robot}
+        """Moves made so far, by robot."""
+        self.best_path = {robot.id: 0 for robot in experiment.learners}
+        """The newest best path length, by learner; 0 before the first."""
+        self.bad_messages = 0
+
+    @property
+    def ended(self) -> bool:
+        """Whether every learner has made its moves and everyone has been told."""
+        return self._ending
+
+    def step(self, batch: Batch) -> None:
+        """Take in a batch; announce the run's state once a second and when it changes."""
+        for item in batch.items:
+            found = topic_of(item.key)
+            if found and (feed := self._feeds.get(found[0])):
+                feed.put(item.key, Header(item.epoch, item.sequence, item.publish_t_ns), item.payload)
+        for move in self._moves.take():
+            self.moves[move.robot] = move.message.number
+        for best in self._best_paths.take():
+            self.best_path[best.robot] = best.message.length
+        self.bad_messages = sum(feed.bad for feed in self._feeds.values())
+        self._ending = all(
+            self.moves[robot.id] >= self._experiment.run.moves for robot in self._experiment.learners
+        )
+        if batch.t_ns >= self._state_due_ns or self._ending:
+            self._state_due_ns = batch.t_ns + RUN_STATE_PERIOD_NS
+            self.announce(pb.RunState.ENDED if self._ending else pb.RunState.RUNNING)
+
+    def announce(self, phase: pb.RunState.Phase.ValueType) -> None:
+        """Tell everyone the phase of the trial."""
+        state = pb.RunState(phase=phase, trial=self._trial, experiment=self._experiment.run.name)
+        self._publish(keys.RUN_STATE, state, "")
+
+    def event(self, name: str, text: str, level: pb.Event.Level.ValueType = pb.Event.INFO) -> None:
+        """Put something that a person should know into the log."""
+        self._publish(keys.SERVER_EVENT, pb.Event(level=level, name=name, text=text), "")

@@ -1,0 +1,155 @@
+"""Lockstep virtual time, the hub's side: one message to every process a tick, one message back."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TypeVar
+
+from google.protobuf.message import Message
+
+from server.batch import Batch, LogItem
+from swarm.bus import Bus
+from swarm.clock import NS_PER_S
+from swarm.errors import RunFailedError
+from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
+from swarm.link import Sequencer
+from swarm.lockstep import EPOCH, key_matches, parse_done
+from swarm.messages import swarm_pb2 as pb
+
+M = TypeVar("M", bound=Message)
+
+WAKE_S = 0.25
+NAMED_AFTER_S = 2.0
+LOST_AFTER_S = 30.0
+GREETED_WITHIN_S = 60.0
+
+
+class LockstepHub:
+    """Sends numbered ticks and waits for every process's answer.
+
+    What a process publishes in one tick reaches its subscribers with the next; the items of a tick are
+    ordered by key and sequence, so that neither load nor the number of processes shows. `check` raises
+    when a process has died; `warn` is told which process does not answer.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        processes: list[str],
+        tick_s: float,
+        check: Callable[[], None],
+        warn: Callable[[str], None],
+        monotonic_s: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._inbox = bus.inbox(LOCKSTEP_DONE, Delivery.EVERY, wake_s=WAKE_S)
+        self._senders = {
+            name: bus.sender(LOCKSTEP_TICK.format(process=name), Delivery.EVERY) for name in processes
+        }
+        self._tick_ns = round(tick_s * NS_PER_S)
+        self._check = check
+        self._warn = warn
+        self._monotonic_s = monotonic_s
+        self._subscriptions: dict[str, list[str]] = {}
+        self._readers: dict[str, tuple[str, ...]] = {}
+        self._sequencer = Sequencer()
+        self._own: list[LogItem] = []
+        self._to_deliver: list[LogItem] = []
+        self._frames: dict[str, bytes] = {}
+        self.number = 0
+        """The tick that is under way."""
+
+    def start(self) -> None:
+        """Wait for every process's HELLO; the first tick answers it."""
+        deadline_s = self._monotonic_s() + GREETED_WITHIN_S
+        while missing := sorted(set(self._senders) - set(self._subscriptions)):
+            done = parse_done(self._inbox.wait().payload)
+            if done and done.HasField("hello") and done.process in self._senders:
+                self._subscriptions[done.process] = list(done.hello.subscriptions)
+            self._check()
+            if self._monotonic_s() > deadline_s:
+                raise RunFailedError(f"{', '.join(missing)} did not start within {GREETED_WITHIN_S:g} s")
+
+    def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
+        key = topic.key(robot)
+        t_ns = self.number * self._tick_ns
+        number = self._sequencer.following(key)
+        self._own.append(LogItem(key, EPOCH, number, t_ns, message.SerializeToString()))
+
+    def advance(self) -> None:
+        """Send the next tick, and with it to each process what it listens to."""
+        self.number += 1
+        ticks = {
+            name: pb.Tick(number=self.number, t_ns=self.number * self._tick_ns) for name in self._senders
+        }
+        for item in self._to_deliver:
+            for name in self._readers_of(item.key):
+                ticks[name].items.add(
+                    key=item.key, epoch=item.epoch, sequence=item.sequence, payload=item.payload
+                )
+        self._to_deliver = []
+        self._frames = {name: tick.SerializeToString() for name, tick in ticks.items()}
+        for name, frame in self._frames.items():
+            self._senders[name].put(frame)
+
+    def gather(self) -> Batch:
+        """Every message of the tick, sorted. A tick that nobody answers is sent again and then given up."""
+        waiting = set(self._senders)
+        items: list[pb.Item] = []
+        began_s = named_s = self._monotonic_s()
+        while waiting:
+            payload = self._inbox.wait().payload
+            if not payload:
+                named_s = self._look_for(waiting, began_s, named_s)
+                continue
+            done = parse_done(payload)
+            if done and done.number == self.number and done.process in waiting:
+                items.extend(done.items)
+                if not done.more:
+                    waiting.discard(done.process)
+        return self._batch(items)
+
+    def unsent(self) -> Batch:
+        own, self._own = self._own, []
+        return Batch(self.number * self._tick_ns, own)
+
+    def finish(self) -> None:
+        """End every process's ticks."""
+        end = pb.Tick(number=self.number + 1, end=True).SerializeToString()
+        for sender in self._senders.values():
+            sender.put(end)
+
+    def _batch(self, items: list[pb.Item]) -> Batch:
+        t_ns = self.number * self._tick_ns
+        found = [LogItem(item.key, item.epoch, item.sequence, t_ns, item.payload) for item in items]
+        found.extend(self._own)
+        self._own = []
+        found.sort()
+        self._to_deliver = found
+        return Batch(t_ns, found)
+
+    def _readers_of(self, key: str) -> tuple[str, ...]:
+        if key not in self._readers:
+            self._readers[key] = tuple(
+                name
+                for name, expressions in self._subscriptions.items()
+                if any(key_matches(expression, key) for expression in expressions)
+            )
+        return self._readers[key]
+
+    def _look_for(self, waiting: set[str], began_s: float, named_s: float) -> float:
+        """Name the processes that are missing: at once if they died, after 2 s if they are silent."""
+        names = ", ".join(sorted(waiting))
+        try:
+            self._check()
+        except RunFailedError as error:
+            raise RunFailedError(f"{error}; tick {self.number} waits for {names}") from error
+        now_s = self._monotonic_s()
+        if now_s - began_s > LOST_AFTER_S:
+            raise RunFailedError(f"{names} did not answer tick {self.number} within {LOST_AFTER_S:g} s")
+        if now_s - named_s > NAMED_AFTER_S - WAKE_S:
+            self._warn(f"tick {self.number} still waits for {names}")
+            for name in waiting:
+                self._senders[name].put(self._frames[name])
+            return now_s
+        return named_s

@@ -1,0 +1,84 @@
+"""The `swarm-server` command: it conducts an experiment, and records everything."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+from rich.console import Console
+
+from server.progress import RunProgress
+from server.run_directory import RunDirectory
+from server.simulation import Simulation
+from server.summary import print_summary
+from swarm.cli.output import print_json
+from swarm.experiment import Experiment
+from swarm.guard import guarded
+from swarm.process import OneLineParser, leave_on_signals
+
+
+def main() -> None:
+    """Entry point of `swarm-server`."""
+    sys.exit(guarded(lambda: run(_parser().parse_args())))
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Simulate the experiment's swarm and conduct its trials."""
+    leave_on_signals()
+    experiment = Experiment.load(arguments.experiment)
+    experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
+    directory = RunDirectory.create(arguments.out, experiment.run.name)
+    console = Console(stderr=True)
+    with RunProgress(experiment, console) as progress:
+        simulation = Simulation(experiment, arguments.experiment, directory, arguments.speed, progress)
+        summary = simulation.run()
+    if arguments.json:
+        print_json(summary)
+    else:
+        print_summary(summary)
+
+
+def _parser() -> OneLineParser:
+    parser = OneLineParser(prog="swarm-server", description="Runs a simulated swarm and records everything.")
+    parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="what is run")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="a new directory (runs/NAME-001 and so on)")
+    parser.add_argument("--seed", type=_at_least(0), metavar="N", help="in place of the experiment's")
+    parser.add_argument("--moves", type=_at_least(1), metavar="N", help="in place of the experiment's")
+    parser.add_argument(
+        "--processes", type=_at_least(0), metavar="N", help="for the robots; 0 gives each its own"
+    )
+    parser.add_argument(
+        "--speed",
+        type=_speed,
+        metavar="max|X",
+        help="max: lockstep, as fast as possible, repeatable (the default); X: so many times as fast as life",
+    )
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    return parser
+
+
+def _at_least(low: int):  # type: ignore[no-untyped-def]
+    def whole_number(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = low - 1
+        if not low <= value < 2**63:
+            raise argparse.ArgumentTypeError(f"{text!r} is no whole number of at least {low}")
+        return value
+
+    return whole_number
+
+
+def _speed(text: str) -> float | None:
+    if text == "max":
+        return None
+    try:
+        speed = float(text)
+    except ValueError:
+        speed = math.nan
+    if not 0.01 <= speed <= 1000:
+        raise argparse.ArgumentTypeError(f"{text!r} is neither max nor a number from 0.01 to 1000")
+    return speed

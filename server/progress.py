@@ -1,0 +1,59 @@
+"""What a person sees while a run goes on: a bar with the moves and the learning so far."""
+
+from __future__ import annotations
+
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from server.conductor import Conductor
+from swarm.experiment import Experiment
+
+
+class RunProgress:
+    """A progress bar on a terminal; silent where there is none."""
+
+    def __init__(self, experiment: Experiment, console: Console) -> None:
+        self._experiment = experiment
+        self._progress = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TextColumn("moves  {task.fields[learning]}"),
+            TimeRemainingColumn(),
+            console=console,
+            disable=not console.is_terminal,
+        )
+        learners = len(experiment.learners)
+        self._task = self._progress.add_task("", total=experiment.run.moves * learners, learning="")
+
+    def __enter__(self) -> RunProgress:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._progress.stop()
+
+    def begin(self, trial: int) -> None:
+        """A new trial: the bar starts again."""
+        of = f"/{self._experiment.run.trials}" if self._experiment.run.trials > 1 else ""
+        self._progress.reset(self._task, description=f"trial {trial + 1}{of}", learning="")
+
+    def show(self, conductor: Conductor, t_s: float) -> None:
+        """Moves of all learners, and the best path of each."""
+        learners = self._experiment.learners
+        best = ", ".join(f"{robot.id} {conductor.best_path[robot.id] or '-'}" for robot in learners)
+        made = sum(conductor.moves[robot.id] for robot in learners)
+        self._progress.update(
+            self._task, completed=made, learning=f"after {t_s / 3600:.1f} h  best path: {best}"
+        )
+
+    def warn(self, text: str) -> None:
+        """A line above the bar."""
+        self._progress.console.print(f"warning: {text}", highlight=False)

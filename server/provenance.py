@@ -1,0 +1,55 @@
+"""What a log has to say of how it was made. All of it is the same in every repetition of a run."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from swarm.experiment import Experiment
+
+PACKAGES = ("swarm-runtime", "eclipse-zenoh", "numpy", "protobuf", "mcap")
+
+
+def metadata(experiment: Experiment, file: Path, trial: int) -> dict[str, dict[str, str]]:
+    """The metadata records of a trial's log."""
+    run = experiment.run
+    return {
+        "experiment": {"toml": file.read_text(encoding="utf-8")},
+        "run": {
+            "name": run.name,
+            "seed": str(run.seed),
+            "moves": str(run.moves),
+            "trial": str(trial),
+        },
+        "robots": {robot.id: f"{robot.role.value} {robot.group}" for robot in experiment.robot},
+        "versions": {"python": sys.version.split()[0], "commit": commit(), **_versions()},
+    }
+
+
+def commit() -> str:
+    """The git commit of the program, with "+changes" if files differ from it; "unknown" outside git."""
+    here = Path(__file__).parent
+    found = _git(here, "rev-parse", "HEAD")
+    if not found:
+        return "unknown"
+    return found + ("+changes" if _git(here, "status", "--porcelain", "--untracked-files=no") else "")
+
+
+def _git(here: Path, *arguments: str) -> str:
+    try:
+        answer = subprocess.run(["git", *arguments], cwd=here, capture_output=True, text=True, check=False)
+    except OSError:
+        return ""
+    return answer.stdout.strip() if answer.returncode == 0 else ""
+
+
+def _versions() -> dict[str, str]:
+    found = {}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "unknown"
+    return found

@@ -1,0 +1,109 @@
+"""Writes what was received, as it was received: the wire bytes are the log bytes."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from google.protobuf.descriptor_pb2 import FileDescriptorSet
+from google.protobuf.message import Message
+from mcap.writer import CompressionType, Writer
+
+from server.batch import Batch, LogItem
+from swarm.errors import UserError
+from swarm.keys import topic_of
+
+CHUNK_BYTES = 256 * 1024
+
+
+class Recorder:
+    """One MCAP file of one trial. Payloads are never decoded; schemas are embedded.
+
+    A channel stands for one key and one epoch of its sender, so that a restart shows; the file's
+    `sequence` is the header's, its publish time the header's, its log time the time of receipt.
+    """
+
+    def __init__(self, path: Path, metadata: Mapping[str, Mapping[str, str]]) -> None:
+        try:
+            self._file = path.open("xb")
+        except FileExistsError as error:
+            raise UserError(
+                f"{path}: exists already; nothing is overwritten, choose another --out"
+            ) from error
+        self.path = path
+        self.messages = 0
+        self.unknown_keys: dict[str, int] = {}
+        """Keys that the key table does not know, with the number of messages that were left out."""
+        self._writer = Writer(
+            self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=False
+        )
+        self._writer.start(profile="", library="swarm-runtime")
+        self._schemas: dict[str, int] = {}
+        self._channels: dict[tuple[str, int], int | None] = {}
+        for name, values in metadata.items():
+            self._writer.add_metadata(name, dict(values))
+
+    def write(self, batch: Batch) -> None:
+        """Append a batch; its order is the file's order."""
+        for item in batch.items:
+            channel = self._channel(item)
+            if channel is not None:
+                self._writer.add_message(
+                    channel, batch.t_ns, item.payload, item.publish_t_ns, item.sequence & 0xFFFFFFFF
+                )
+                self.messages += 1
+
+    def flush(self) -> None:
+        """End the chunk and hand everything to the operating system: a killed server loses none of it."""
+        self._writer.flush()  # type: ignore[no-untyped-call]
+
+    def close(self) -> None:
+        """Write the index and close the file; a second call does nothing."""
+        if not self._file.closed:
+            self._writer.finish()  # type: ignore[no-untyped-call]
+            self._file.close()
+
+    def _channel(self, item: LogItem) -> int | None:
+        """The channel of a key and epoch; None for a key that is not to be logged."""
+        name = (item.key, item.epoch)
+        if name not in self._channels:
+            self._channels[name] = self._registered(item)
+        if self._channels[name] is None and topic_of(item.key) is None:
+            self.unknown_keys[item.key] = self.unknown_keys.get(item.key, 0) + 1
+        return self._channels[name]
+
+    def _registered(self, item: LogItem) -> int | None:
+        found = topic_of(item.key)
+        if found is None or not found[0].logged:
+            return None
+        topic, robot = found
+        metadata = {"epoch": str(item.epoch), "robot": robot, "delivery": topic.delivery.value}
+        return int(self._writer.register_channel(item.key, "protobuf", self._schema(topic.message), metadata))
+
+    def _schema(self, message: type[Message]) -> int:
+        name = message.DESCRIPTOR.full_name
+        if name not in self._schemas:
+            data = _descriptor_set(message.DESCRIPTOR.file).SerializeToString(deterministic=True)
+            self._schemas[name] = self._writer.register_schema(name, "protobuf", data)
+        return self._schemas[name]
+
+
+def _descriptor_set(file: Any) -> FileDescriptorSet:
+    """A schema file and everything that it imports, dependencies first."""
+    found = FileDescriptorSet()
+    for dependency in file.dependencies:
+        found.file.extend(_descriptor_set(dependency).file)
+    file.CopyToProto(found.file.add())
+    return found
+
+
+def digest(paths: Iterable[Path]) -> str:
+    """SHA-256 over the contents of log files, in order."""
+    total = hashlib.sha256()
+    for path in paths:
+        with path.open("rb") as file:
+            while block := file.read(1 << 20):
+                total.update(block)
+    return total.hexdigest()

@@ -1,0 +1,98 @@
+"""One trial from its first to its last message."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from server.conductor import Conductor
+from server.health import Health
+from server.hub import Hub
+from server.recorder import Recorder
+from swarm.messages import swarm_pb2 as pb
+
+BATCHES_AFTER_THE_END = 3
+"""So many more, for the robots' last words."""
+
+
+@dataclass(frozen=True)
+class TrialResult:
+    """What a trial came to."""
+
+    moves: int
+    sim_s: float
+    messages: int
+    bad_messages: int
+    unknown_keys: dict[str, int]
+    slowest_keys: dict[str, float]
+
+
+class Trial:
+    """Moves messages from the hub to the conductor, the health check and the log."""
+
+    def __init__(
+        self,
+        hub: Hub,
+        conductor: Conductor,
+        recorder: Recorder,
+        health: Health,
+        batches_between_flushes: int,
+        show: Callable[[Conductor, float], None],
+    ) -> None:
+        self._hub = hub
+        self._conductor = conductor
+        self._recorder = recorder
+        self._health = health
+        self._batches_between_flushes = batches_between_flushes
+        self._show = show
+        self._batches = 0
+        self._began_ns: int | None = None
+        self._t_ns = 0
+
+    def run(self) -> TrialResult:
+        """Until every learner has made its moves. The log is closed whatever happens."""
+        try:
+            self._hub.start()
+            self._hub.advance()
+            while not self._conductor.ended:
+                self._step()
+            for _ in range(BATCHES_AFTER_THE_END):
+                self._step()
+            self._hub.finish()
+        except BaseException as error:
+            self._note_end(error)
+            raise
+        finally:
+            self._recorder.close()
+        return self.result()
+
+    def result(self) -> TrialResult:
+        """What the trial has come to so far."""
+        return TrialResult(
+            moves=sum(self._conductor.moves.values()),
+            sim_s=(self._t_ns - (self._began_ns or 0)) / 1e9,
+            messages=self._recorder.messages,
+            bad_messages=self._conductor.bad_messages,
+            unknown_keys=self._recorder.unknown_keys,
+            slowest_keys=self._health.lowest_share,
+        )
+
+    def _step(self) -> None:
+        """The processes already work on the next tick while this one's messages are recorded."""
+        batch = self._hub.gather()
+        self._conductor.step(batch)
+        self._hub.advance()
+        self._recorder.write(batch)
+        self._health.step(batch)
+        self._began_ns = batch.t_ns if self._began_ns is None else self._began_ns
+        self._t_ns = batch.t_ns
+        self._batches += 1
+        if self._batches % self._batches_between_flushes == 0:
+            self._recorder.flush()
+            self._show(self._conductor, self._t_ns / 1e9)
+
+    def _note_end(self, error: BaseException) -> None:
+        """The reason is the log's last message."""
+        text = str(error) or type(error).__name__
+        self._conductor.event("interrupted", text[:500], pb.Event.ERROR)
+        self._recorder.write(self._hub.unsent())
