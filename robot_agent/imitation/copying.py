@@ -20,8 +20,8 @@ from robot_agent.imitation.smoothing import Smoothed, smooth
 from swarm.geometry import Move
 from swarm.learning.paths import ObservedPath
 
-MOST_POSITIONS = 20_000
-"""Over an hour at five frames a second; more is a fault, and would keep the robot from its work."""
+MOST_POSITIONS = 5_000
+"""A quarter of an hour at five frames a second; more is a fault, and would keep the robot from its work."""
 MOST_LOST = 0.3
 """Larger a share of frames without the demonstrator, and nothing is copied."""
 

@@ -83,11 +83,14 @@ def _bend_vertex(sightings: Sightings, smoothed: Smoothed, bend: int) -> Vertex:
 def _bends(sightings: Sightings, smoothed: Smoothed, start: int, end: int, least_m: float) -> list[int]:
     """Split a drive at its farthest place from the chord, again and again (Ramer, 1972; Douglas and Peucker,
     1973), with the distance measured in units of its own error."""
-    bend = _farthest(sightings, smoothed, start, end)
-    if bend is None or not _parted(smoothed.xy_m[[start, bend, end]], least_m):
-        return []
-    left = _bends(sightings, smoothed, start, bend, least_m)
-    return [*left, bend, *_bends(sightings, smoothed, bend, end, least_m)]
+    corners, waiting = [start], [end]
+    while waiting:
+        bend = _farthest(sightings, smoothed, corners[-1], waiting[-1])
+        if bend is None or not _parted(smoothed.xy_m[[corners[-1], bend, waiting[-1]]], least_m):
+            corners.append(waiting.pop())
+        else:
+            waiting.append(bend)
+    return corners[1:-1]
 
 
 def _farthest(sightings: Sightings, smoothed: Smoothed, start: int, end: int) -> int | None:
