@@ -130,9 +130,10 @@ def standing(frame: int, x_m: float = 0.5) -> ObservedPosition:
 
 
 @BOTH
-def test_less_than_a_third_lost_is_copied(profile: CopyProfile) -> None:
-    rng = np.random.default_rng(6)
-    shown = demonstration(rng, 44, (Move.E, Move.N, Move.W), replace(CLEAR, dropped=0.2))
+def test_a_quarter_lost_is_copied(profile: CopyProfile) -> None:
+    rng = np.random.default_rng(7)
+    shown = demonstration(rng, 44, (Move.E, Move.N, Move.W), replace(CLEAR, dropped=0.25))
+    assert 0.7 * shown.expected_frames < len(shown.positions) < 0.8 * shown.expected_frames
     assert copied(shown, profile).path().moves == (Move.E, Move.N, Move.W)
 
 

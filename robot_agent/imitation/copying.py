@@ -73,19 +73,18 @@ def copy_moves(
 ) -> Copy | NoCopy:
     """The moves of the demonstration within an observation, or why there are none.
 
-    `positions` are those frames in which the demonstrator was seen, out of `expected_frames`. The drive
-    back to the start is left out, and so is a move that the observation's beginning or end cuts.
+    `positions` are those frames in which the demonstrator was seen, out of `expected_frames`; a position
+    that its neighbours contradict counts as a lost frame. The drive back to the start is left out, and so is
+    a move that the observation's beginning or end cuts.
     """
     if len(positions) > MOST_POSITIONS:
         return NoCopy(
             f"{len(positions)} positions are more than {MOST_POSITIONS}: observe for a shorter time"
         )
     sightings = plausible_sightings(positions)
+    sightings = sightings.where(inliers(sightings))
     if lost := _lost(len(sightings), expected_frames):
         return NoCopy(lost)
-    sightings = sightings.where(inliers(sightings))
-    if len(sightings) == 0:
-        return NoCopy("the positions contradict each other: no two are near enough in time and place")
     smoothed = smooth(sightings)
     rests = find_rests(smoothed, cell_m)
     shown = demonstration_rests(smoothed, rests, cell_m)
