@@ -6,6 +6,7 @@ import sys
 
 import typer
 
+from swarm.cli.reproduce import reproduce_command
 from swarm.errors import UserError
 
 app = typer.Typer(
@@ -20,6 +21,9 @@ app = typer.Typer(
 @app.callback()
 def _root() -> None:
     """Keeps the verbs as sub-commands while there is only one."""
+
+
+app.command("reproduce")(reproduce_command)
 
 
 def run() -> None:

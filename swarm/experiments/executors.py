@@ -1,0 +1,99 @@
+"""Where runs are computed: in this process, in processes on all cores, or on a Dask cluster."""
+
+from __future__ import annotations
+
+import importlib.util
+import multiprocessing
+import signal
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from swarm.errors import UserError
+
+SCHEDULERS = ("processes", "dask")
+
+
+@dataclass(frozen=True)
+class Workers:
+    """`count` calls are computed at a time; `each` yields the results of calls as they come in."""
+
+    count: int
+    each: Callable[[Callable[..., Any], Iterable[tuple[Any, ...]]], Iterator[Any]]
+
+
+@contextmanager
+def workers(scheduler: str, jobs: int) -> Iterator[Workers]:
+    """`jobs` workers of a scheduler: "processes", "dask" (a cluster on this machine, loopback only), or
+    the address of a running Dask scheduler, such as tcp://10.0.0.5:8786, whose workers have this package.
+    """
+    if scheduler == "processes":
+        if jobs == 1:
+            yield Workers(1, _in_this_process)
+            return
+        with _processes(jobs) as pool:
+            yield Workers(jobs, _through(pool))
+    elif scheduler == "dask" or "://" in scheduler:
+        with _dask(scheduler, jobs) as dask_workers:
+            yield dask_workers
+    else:
+        known = ", ".join(SCHEDULERS)
+        raise UserError(f"unknown scheduler {scheduler!r}; known: {known} or an address like tcp://HOST:8786")
+
+
+def _in_this_process(call: Callable[..., Any], arguments: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
+    return (call(*one) for one in arguments)
+
+
+def _through(pool: Executor) -> Callable[[Callable[..., Any], Iterable[tuple[Any, ...]]], Iterator[Any]]:
+    def each(call: Callable[..., Any], arguments: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
+        # A finished result must not be held once it was yielded: there may be thousands.
+        for future in as_completed({pool.submit(call, *one) for one in arguments}):
+            yield future.result()
+
+    return each
+
+
+@contextmanager
+def _processes(jobs: int) -> Iterator[Executor]:
+    # Threads of polars do not survive a fork, so that workers are started afresh.
+    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), initializer=_leave_interrupts)
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C reaches all processes of a terminal; the parent is the one that answers it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextmanager
+def _dask(scheduler: str, jobs: int) -> Iterator[Workers]:
+    if importlib.util.find_spec("distributed") is None:
+        raise UserError("Dask is missing: install it with pip install 'swarm-runtime[cluster]'")
+    with _dask_client(scheduler, jobs) as client:
+        count = max(1, sum(client.nthreads().values()))
+        yield Workers(count, _through(client.get_executor(pure=False)))
+
+
+@contextmanager
+def _dask_client(scheduler: str, jobs: int) -> Iterator[Any]:
+    distributed: Any = importlib.import_module("distributed")
+    if scheduler == "dask":
+        settings = {"n_workers": jobs, "threads_per_worker": 1, "host": "127.0.0.1"}
+        with (
+            distributed.LocalCluster(**settings, dashboard_address=None) as cluster,
+            distributed.Client(cluster) as client,
+        ):
+            yield client
+        return
+    try:
+        client = distributed.Client(scheduler, timeout="10s")
+    except OSError as error:
+        raise UserError(f"no Dask scheduler answers at {scheduler}: {error}") from error
+    with client:
+        yield client
