@@ -85,7 +85,7 @@ OBSTACLE_100 = Arena(
     Grid(100, 100, _block(100, 40, 59)),
     (Move.SE,) * 39 + (Move.E,) * 20 + (Move.SE,) * 20 + (Move.S,) * 20 + (Move.SE,) * 20,
 )
-"""Figure 10, with a centred block of 20 x 20 cells: what the path of figure 13 (80 SE, 20 E and 20 S) implies.
+"""Figure 10, with a centred block of 20 x 20 cells, as figure 13 (80 SE, 20 E and 20 S) implies.
 
 A shortest path takes 119 moves, 79 of them SE. The expert's goes round the block by the north-east.
 """

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from swarm.geometry import MOVES
 from swarm.gridworld import kernels
 from swarm.gridworld.arena import Arena, expert_values, neighbours
 from swarm.gridworld.condition import (
@@ -161,10 +162,10 @@ def new_agent(condition: Condition, seed: int, run: int, name: str) -> Agent:
     moves = rules(condition)[0].moves
     counts = {
         field: np.zeros(1, np.int64)
-        for field in ("arrivals", "remembered", "index", "trail_moves", "shown_moves")
+        for field in ("arrivals", "remembered", "place_in_path", "trail_moves", "shown_moves")
     }
     return Agent(
-        q=np.zeros(states * kernels.MOVES),
+        q=np.zeros(states * MOVES),
         best=np.zeros(states),
         greedy=np.full(states, kernels.ALL_MOVES, np.uint8),
         place=np.full(1, condition.arena.grid.start, np.int64),

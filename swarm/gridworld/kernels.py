@@ -7,7 +7,8 @@ compiled functions stand in this one file, since numba's cache notices changes o
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numba import njit
@@ -15,6 +16,12 @@ from numpy.typing import NDArray
 
 from swarm.geometry import MOVES
 from swarm.gridworld.splitmix import FIRST, GOLDEN, SECOND
+
+Whole = int | np.int64 | Any
+Real = float | Any
+Truth = bool | Any
+Word = np.uint64 | Any
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 ALL_MOVES = (1 << MOVES) - 1
 SETS = [[move for move in range(MOVES) if mask >> move & 1] for mask in range(ALL_MOVES + 1)]
@@ -28,6 +35,21 @@ FIXED, COMPLETION, AVERAGE_Q = 0, 1, 2
 WATCHES_NOBODY, WATCHES_EXPERT, WATCHES_OTHER = 0, 1, 2
 
 _GOLDEN, _FIRST, _SECOND = np.uint64(GOLDEN), np.uint64(FIRST), np.uint64(SECOND)
+
+# Without numba's reference counts, which cost far more than the learning: nothing here allocates.
+_OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
+
+
+def _called(function: Function) -> Function:
+    """Compile as a function of its own."""
+    compiled: Function = njit(**_OPTIONS)(function)
+    return compiled
+
+
+def _inlined(function: Function) -> Function:
+    """Compile into whatever calls it."""
+    compiled: Function = njit(forceinline=True, **_OPTIONS)(function)
+    return compiled
 
 
 class World(NamedTuple):
@@ -94,7 +116,7 @@ class Agent(NamedTuple):
     remembered: NDArray[np.int64]
     replayed: NDArray[np.int64]
     """The memory's place of the path being replayed, or NO_REPLAY"""
-    index: NDArray[np.int64]
+    place_in_path: NDArray[np.int64]
     change: NDArray[np.float64]
     """The sum of the replay's changes of Q values"""
     trail: NDArray[np.uint8]
@@ -118,8 +140,8 @@ class BestPath(NamedTuple):
     """What was found so far (points,)"""
 
 
-@njit(cache=True)
-def _bits(stream):  # type: ignore[no-untyped-def]
+@_inlined
+def _bits(stream: NDArray[np.uint64]) -> Word:
     word = stream[0] + _GOLDEN
     stream[0] = word
     word = (word ^ (word >> np.uint64(30))) * _FIRST
@@ -127,38 +149,38 @@ def _bits(stream):  # type: ignore[no-untyped-def]
     return word ^ (word >> np.uint64(31))
 
 
-@njit(cache=True)
-def _random(stream):  # type: ignore[no-untyped-def]
+@_inlined
+def _random(stream: NDArray[np.uint64]) -> Real:
     return np.float64(np.int64(_bits(stream) >> np.uint64(11))) * 2.0**-53
 
 
-@njit(cache=True)
-def _integer(high, stream):  # type: ignore[no-untyped-def]
+@_inlined
+def _integer(high: Whole, stream: NDArray[np.uint64]) -> Whole:
     return np.int64(((_bits(stream) >> np.uint64(32)) * np.uint64(high)) >> np.uint64(32))
 
 
-@njit(cache=True)
-def _pick(actions, stream):  # type: ignore[no-untyped-def]
+@_inlined
+def _pick(actions: Whole, stream: NDArray[np.uint64]) -> Whole:
     """A member of a set of actions, at random."""
     return np.int64(MEMBER[np.int64(actions) * MOVES + _integer(SIZE[actions], stream)])
 
 
-@njit(cache=True)
-def _greedy(actions, stream):  # type: ignore[no-untyped-def]
+@_inlined
+def _greedy(actions: Whole, stream: NDArray[np.uint64]) -> Whole:
     """`QTable.greedy`."""
     return np.int64(MEMBER[np.int64(actions) * MOVES]) if SIZE[actions] == 1 else _pick(actions, stream)
 
 
-@njit(cache=True)
-def _ratio(agent, i, approach):  # type: ignore[no-untyped-def]
+@_inlined
+def _ratio(agent: Agent, i: Whole, approach: Whole) -> Real:
     """`ImitationMemory.ratio`."""
     if approach == FIXED:
         return 1.0
     return (agent.counted[i] + 1) / (agent.replicated[i] + 1)
 
 
-@njit(cache=True)
-def _weigh(agent, first, approach):  # type: ignore[no-untyped-def]
+@_called
+def _weigh(agent: Agent, first: Whole, approach: Whole) -> None:
     """Bring the ratios and their running sums up to date from the path `first` on."""
     total = agent.totals[first - 1] if first > 0 else 0.0
     for i in range(first, agent.remembered[0]):
@@ -167,8 +189,8 @@ def _weigh(agent, first, approach):  # type: ignore[no-untyped-def]
         agent.totals[i] = total
 
 
-@njit(cache=True)
-def _choose_path(agent):  # type: ignore[no-untyped-def]
+@_inlined
+def _choose_path(agent: Agent) -> Whole:
     """`ImitationMemory.choose`."""
     last = agent.remembered[0] - 1
     if last == 0:
@@ -180,11 +202,11 @@ def _choose_path(agent):  # type: ignore[no-untyped-def]
     return chosen
 
 
-@njit(cache=True)
-def remember(agent, rules, moves, start, length):  # type: ignore[no-untyped-def]
+@_called
+def remember(agent: Agent, rules: Rules, moves: NDArray[np.uint8], start: Whole, length: Whole) -> None:
     """`ImitationMemory.remember` of `length` moves out of a ring that begins at `start`."""
     if agent.remembered[0] == len(agent.lengths):
-        _forget(agent, np.argmin(agent.ratios))
+        _forget(agent)
     i = agent.remembered[0]
     for k in range(length):
         agent.paths[i, k] = moves[(start + k) % len(moves)]
@@ -193,10 +215,15 @@ def remember(agent, rules, moves, start, length):  # type: ignore[no-untyped-def
     _weigh(agent, 0, rules.approach)
 
 
-@njit(cache=True)
-def _forget(agent, lowest):  # type: ignore[no-untyped-def]
+@_called
+def _forget(agent: Agent) -> None:
+    lowest = 0
+    for i in range(1, agent.remembered[0]):
+        if agent.ratios[i] < agent.ratios[lowest]:
+            lowest = i
     for i in range(lowest, agent.remembered[0] - 1):
-        agent.paths[i] = agent.paths[i + 1]
+        for k in range(agent.paths.shape[1]):
+            agent.paths[i, k] = agent.paths[i + 1, k]
         agent.lengths[i] = agent.lengths[i + 1]
         agent.replicated[i] = agent.replicated[i + 1]
         agent.counted[i] = agent.counted[i + 1]
@@ -204,39 +231,39 @@ def _forget(agent, lowest):  # type: ignore[no-untyped-def]
     agent.remembered[0] -= 1
 
 
-@njit(cache=True)
-def _epsilon_greedy(agent, rules):  # type: ignore[no-untyped-def]
+@_inlined
+def _epsilon_greedy(agent: Agent, rules: Rules) -> Whole:
     actions = agent.greedy[agent.place[0]]
     if rules.epsilon > _random(agent.stream):
         actions = np.uint8(ALL_MOVES)
     return _pick(actions, agent.stream)
 
 
-@njit(cache=True)
-def _choose(agent, other, rules):  # type: ignore[no-untyped-def]
+@_inlined
+def _choose(agent: Agent, other: Agent, rules: Rules) -> Whole:
     """`Controller.choose`."""
     last = False
     if agent.replayed[0] == NO_REPLAY:
         path = _choose_path(agent)
         if rules.beta * agent.ratios[path] <= _random(agent.stream):
             return _epsilon_greedy(agent, rules)
-        agent.replayed[0], agent.index[0], agent.change[0] = path, 0, 0.0
+        agent.replayed[0], agent.place_in_path[0], agent.change[0] = path, 0, 0.0
     else:
-        agent.index[0] += 1
-        last = agent.index[0] == agent.lengths[agent.replayed[0]] - 1
+        agent.place_in_path[0] += 1
+        last = agent.place_in_path[0] == agent.lengths[agent.replayed[0]] - 1
     place = agent.place[0]
     if rules.accesses:
         action = _greedy(other.greedy[place], agent.stream)
     else:
-        action = np.int64(agent.paths[agent.replayed[0], agent.index[0]])
+        action = np.int64(agent.paths[agent.replayed[0], agent.place_in_path[0]])
     if not last and not (agent.greedy[place] >> action) & 1:
         _end(agent, rules, False)
         return _epsilon_greedy(agent, rules)
     return action
 
 
-@njit(cache=True)
-def _end(agent, rules, completed):  # type: ignore[no-untyped-def]
+@_inlined
+def _end(agent: Agent, rules: Rules, completed: Truth) -> None:
     """`Controller._end`."""
     path = agent.replayed[0]
     agent.replicated[path] += 1
@@ -245,16 +272,17 @@ def _end(agent, rules, completed):  # type: ignore[no-untyped-def]
     agent.replayed[0] = NO_REPLAY
 
 
-@njit(cache=True)
-def _update(agent, rules, action, reward, entered):  # type: ignore[no-untyped-def]
+@_inlined
+def _update(agent: Agent, rules: Rules, action: Whole, reward: Real, entered: Whole) -> Real:
     """`QTable.update`, and the set of greedy actions with it."""
     place = agent.place[0]
     at = place * MOVES + action
     change = rules.alpha * (reward + rules.gamma * agent.best[entered] - agent.q[at])
     value = agent.q[at] + change
     agent.q[at] = value
-    best, actions, this = agent.best[place], np.int64(agent.greedy[place]), np.int64(1) << action
-    joined = actions | this if value == best else actions & ~this
+    best, this = agent.best[place], np.int64(1) << action
+    actions: Whole = np.int64(agent.greedy[place])
+    joined: Whole = actions | this if value == best else actions & ~this
     actions = this if value > best else joined
     best = max(value, best)
     if actions == 0:
@@ -263,25 +291,26 @@ def _update(agent, rules, action, reward, entered):  # type: ignore[no-untyped-d
     return change
 
 
-@njit(cache=True)
-def _scan(q, place):  # type: ignore[no-untyped-def]
+@_called
+def _scan(q: NDArray[np.float64], place: Whole) -> tuple[Real, Whole]:
     """The best value of a state and the set of actions that have it."""
-    row = q[place * MOVES : (place + 1) * MOVES]
-    best, actions = row.max(), 0
-    for action in range(MOVES):
-        actions |= (row[action] == best) << action
+    best, actions = q[place * MOVES], 1
+    for action in range(1, MOVES):
+        value = q[place * MOVES + action]
+        actions = (1 << action) if value > best else actions | ((value == best) << action)
+        best = max(value, best)
     return best, actions
 
 
-@njit(cache=True)
-def prepare(agent):  # type: ignore[no-untyped-def]
+@_called
+def prepare(agent: Agent) -> None:
     """Find the best values and greedy sets of a table that was filled from outside."""
     for place in range(len(agent.best)):
         agent.best[place], agent.greedy[place] = _scan(agent.q, place)
 
 
-@njit(cache=True)
-def step(world, agent, other, rules):  # type: ignore[no-untyped-def]
+@_inlined
+def step(world: World, agent: Agent, other: Agent, rules: Rules) -> Truth:
     """Choose, move and learn once; whether the goal was reached, and the agent put back to the start."""
     imitates = agent.remembered[0] > 0
     action = _choose(agent, other, rules) if imitates else _epsilon_greedy(agent, rules)
@@ -291,7 +320,7 @@ def step(world, agent, other, rules):  # type: ignore[no-untyped-def]
     change = _update(agent, rules, action, 1.0 if arrived else 0.0, entered)
     if imitates and agent.replayed[0] != NO_REPLAY:
         agent.change[0] += change
-        completed = agent.index[0] == agent.lengths[agent.replayed[0]] - 1
+        completed = agent.place_in_path[0] == agent.lengths[agent.replayed[0]] - 1
         if completed or arrived or entered == place:
             _end(agent, rules, completed)
     if rules.seen:
@@ -301,18 +330,19 @@ def step(world, agent, other, rules):  # type: ignore[no-untyped-def]
     return arrived
 
 
-@njit(cache=True)
-def _leave_trail(agent, action, arrived):  # type: ignore[no-untyped-def]
+@_called
+def _leave_trail(agent: Agent, action: Whole, arrived: Truth) -> None:
     ring = len(agent.trail)
     agent.trail[agent.trail_moves[0] % ring] = action
     agent.trail_moves[0] += 1
     if arrived:
-        agent.shown[:] = agent.trail
+        for k in range(ring):
+            agent.shown[k] = agent.trail[k]
         agent.shown_moves[0], agent.trail_moves[0] = agent.trail_moves[0], 0
 
 
-@njit(cache=True)
-def _copy_moves(agent, other, rules, expert_path):  # type: ignore[no-untyped-def]
+@_called
+def _copy_moves(agent: Agent, other: Agent, rules: Rules, expert_path: NDArray[np.uint8]) -> None:
     """See a stretch of the teacher's trajectory and remember it.
 
     Of another agent these are its last moves, all of one run: the agents' runs are out of step, so
@@ -329,15 +359,17 @@ def _copy_moves(agent, other, rules, expert_path):  # type: ignore[no-untyped-de
     remember(agent, rules, ring, moves - length, length)
 
 
-@njit(cache=True)
-def _step_and_copy(world, agent, other, rules, expert_path):  # type: ignore[no-untyped-def]
+@_inlined
+def _step_and_copy(
+    world: World, agent: Agent, other: Agent, rules: Rules, expert_path: NDArray[np.uint8]
+) -> None:
     arrived = step(world, agent, other, rules)
     if arrived and rules.watches != WATCHES_NOBODY and agent.arrivals[0] % rules.every == 0:
         _copy_moves(agent, other, rules, expert_path)
 
 
-@njit(cache=True)
-def best_path_length(world, agent, found):  # type: ignore[no-untyped-def]
+@_called
+def best_path_length(world: World, agent: Agent, found: BestPath) -> Whole:
     """`greedy_path_length`; not walked again while every set that the last path rests on is the same."""
     length = found.length[0]
     unchanged = length > 0
@@ -348,8 +380,8 @@ def best_path_length(world, agent, found):  # type: ignore[no-untyped-def]
     return _walk(world, agent, found)
 
 
-@njit(cache=True)
-def _walk(world, agent, found):  # type: ignore[no-untyped-def]
+@_called
+def _walk(world: World, agent: Agent, found: BestPath) -> Whole:
     place, ties, length = np.int64(world.start), False, 0
     while place != world.goal and length < len(found.route):
         actions = agent.greedy[place]
@@ -361,14 +393,24 @@ def _walk(world, agent, found):  # type: ignore[no-untyped-def]
     return length
 
 
-@njit(cache=True)
-def _evaluate(world, agent, found, point):  # type: ignore[no-untyped-def]
+@_called
+def _evaluate(world: World, agent: Agent, found: BestPath, point: Whole) -> None:
     if point < len(found.lengths):
         found.lengths[point] = best_path_length(world, agent, found)
 
 
-@njit(cache=True, nogil=True)
-def run(world, one, two, rules, two_rules, found, two_found, expert_path, limits):  # type: ignore[no-untyped-def]
+@_called
+def run(
+    world: World,
+    one: Agent,
+    two: Agent,
+    rules: Rules,
+    two_rules: Rules,
+    found: BestPath,
+    two_found: BestPath,
+    expert_path: NDArray[np.uint8],
+    limits: Limits,
+) -> Whole:
     """Let `one`, and in turn `two` if it takes part, act until a limit; return the steps taken.
 
     The best paths are looked for every `limits.every` steps while there is room for them.
