@@ -45,7 +45,9 @@ class ColourTable:
                     edge_channel=np.array([self.edge_channel], dtype=np.uint8),
                 )
         except FileExistsError as error:
-            raise UserError(f"colour table {path} is there already: choose another name or remove it") from error
+            raise UserError(
+                f"colour table {path} is there already: choose another name or remove it"
+            ) from error
         except OSError as error:
             raise UserError(f"colour table {path}: {error}") from error
 

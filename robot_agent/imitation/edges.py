@@ -22,6 +22,10 @@ REACH_PX = 3
 PLATEAU_PX = 5
 MIN_PALE = 0.6
 MIN_STEP = 0.03
+PART_OF_BODY = 0.3
+"""Of the skirt's height: how far up to look for the body."""
+DARK_PART_OF_WALL = 0.6
+WALL_ROWS = 4
 ROWS_UP_PART = 1 / 24
 ROWS_DOWN_PART = 1 / 64
 
@@ -41,6 +45,19 @@ class EdgeFinder:
         self._model = model
         self._light = (word_colours()[:, table.edge_channel] ** model.gamma).astype(np.float32)
         self._pale = (table.kinds == PALE).astype(np.float32)
+
+    def wall_light(self, words: Words) -> float:
+        """How bright the wall is: the brighter part of the rows above the horizon."""
+        row = int(self._model.horizon_row)
+        light = self._light[words[row - WALL_ROWS : row, ::2]].ravel()
+        return float(np.partition(light, -light.size // 4)[-light.size // 4])
+
+    def has_body_above(self, words: Words, blob: Blob, wall_light: float) -> bool:
+        """Whether it is dark right above a patch: a skirt has a robot's body above it, and a post the wall."""
+        first = max(0, blob.top - max(2, round(PART_OF_BODY * blob.height)))
+        aside = blob.width // 4
+        strip = words[first : max(blob.top, first + 1), blob.left + aside : blob.right - aside]
+        return float(self._light[strip].mean(axis=1).min()) < DARK_PART_OF_WALL * wall_light
 
     def find(self, words: Words, blob: Blob) -> Edges:
         """The edges of a patch of skirt; its box may be wrong by two pixels."""

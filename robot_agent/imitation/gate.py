@@ -11,7 +11,7 @@ FASTEST_TURN_RAD_S = 1.6
 RANGE_SLACK_M = 0.015
 BEARING_SLACK_RAD = 0.03
 DEVIATIONS = 4.0
-MEMORY_NS = 2_000_000_000
+MEMORY_NS = 10_000_000_000
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Place:
 
 
 class Gate:
-    """Remembers the last place for two seconds; then anything is possible again."""
+    """Remembers the last place for ten seconds; then the robot can be anywhere."""
 
     def __init__(self) -> None:
         self._last: Place | None = None

@@ -13,14 +13,12 @@ from enum import Enum
 import numpy as np
 
 from robot_agent.drivers.camera import Frame
-from robot_agent.drivers.camera_formats import Words, frame_words, word_colours
+from robot_agent.drivers.camera_formats import Words, frame_words
 from robot_agent.drivers.camera_model import CameraModel
 from robot_agent.imitation.colour import SKIRT, ColourTable
-from robot_agent.imitation.components import Blob, blobs_at_horizon, looks_like_skirt, looks_like_skirt_cut_off
+from robot_agent.imitation.components import Blob, blobs_at_horizon
 from robot_agent.imitation.cylinder import (
-    SKIRT_BOTTOM_M,
     SKIRT_RADIUS_M,
-    SKIRT_TOP_M,
     Covariance,
     covariance,
     covariance_of_one_edge,
@@ -29,6 +27,7 @@ from robot_agent.imitation.cylinder import (
 )
 from robot_agent.imitation.edges import EdgeFinder
 from robot_agent.imitation.gate import Gate, Place
+from robot_agent.imitation.shape import depth_from_height_m, fits_part_of_skirt, fits_skirt
 from swarm.errors import UserError, nearest
 
 MOUNTING_SD_RAD = math.radians(0.05)
@@ -36,8 +35,10 @@ MAX_CANDIDATES = 6
 BORDER_PX = 5
 """An edge needs this much of the wall beside it."""
 CLEARLY_NEARER = 0.5
-DARK_LEVEL = 0.12
-DARK_PERCENTILE = 90
+HEIGHT_SD_PX = 1.5
+MIN_WIDTH_PX = 4
+DARK_LIGHT = 0.03
+"""Of the sensor's full scale."""
 
 
 class Reason(Enum):
@@ -56,8 +57,8 @@ class Reason(Enum):
 class Sighting:
     """The demonstrator's axis, seen from the camera; bearings are counter-clockwise from the camera's axis.
 
-    `cut_off`: one side is outside the image (its column is then None), so the range comes from the skirt's
-    height and is coarse; the covariance says so.
+    `cut_off`: one side is outside the image or not against the wall (its column is then None), so the range
+    comes from the skirt's height and is coarse; the covariance says so.
     """
 
     t_ns: int
@@ -89,6 +90,7 @@ class NotSeen:
 class Profile:
     """How edges are measured: to a fraction of a pixel, or as the border of the patch in whole pixels.
 
+    `tolerance_px` is how far a patch's upper and lower border may be from where a skirt's would be.
     `edge_sd_px` is the standard deviation of an edge's error, measured by tests/benchmarks/seeing.py.
     """
 
@@ -96,11 +98,12 @@ class Profile:
     height: int
     sub_pixel: bool
     edge_sd_px: float
+    tolerance_px: float
 
 
 PROFILES = {
-    "best": Profile(320, 240, sub_pixel=True, edge_sd_px=0.08),
-    "paper": Profile(160, 120, sub_pixel=False, edge_sd_px=0.5),
+    "best": Profile(320, 240, sub_pixel=True, edge_sd_px=0.08, tolerance_px=1.8),
+    "paper": Profile(160, 120, sub_pixel=False, edge_sd_px=0.5, tolerance_px=3.5),
 }
 
 
@@ -118,7 +121,7 @@ class Seer:
         self.model = model.scaled(self.profile.width, self.profile.height)
         self._is_skirt = (table.kinds == SKIRT).astype(np.uint8)
         self._finder = EdgeFinder(self.model, table)
-        self._brightness = word_colours().max(axis=1)
+        self._tolerance_px = self.profile.tolerance_px
         self._gate = Gate()
         self._edge_sd_rad = self.profile.edge_sd_px / self.model.focal_px
 
@@ -136,9 +139,10 @@ class Seer:
         self._check_size(frame)
         self._gate.turn(turned_rad)
         words = frame_words(frame)
-        if self._is_dark(words):
+        wall_light = self._finder.wall_light(words)
+        if wall_light < DARK_LIGHT:
             return NotSeen(frame.t_ns, Reason.DARK)
-        answer = self._choose(frame.t_ns, self._candidates(frame.t_ns, words))
+        answer = self._choose(frame.t_ns, self._candidates(frame.t_ns, words, wall_light))
         if isinstance(answer, Sighting):
             self._gate.keep(_place(answer))
             return answer
@@ -151,28 +155,24 @@ class Seer:
                 f"{self.profile.width} x {self.profile.height}: set the camera to that size"
             )
 
-    def _is_dark(self, words: Words) -> bool:
-        sample = self._brightness[words[::8, ::8]]
-        return bool(np.partition(sample.ravel(), -sample.size // 10)[-sample.size // 10] < DARK_LEVEL)
-
-    def _candidates(self, t_ns: int, words: Words) -> list[Sighting | Reason]:
+    def _candidates(self, t_ns: int, words: Words, wall_light: float) -> list[Sighting | Reason]:
         """An answer for each patch of the skirt's colour, the largest first."""
-        blobs = blobs_at_horizon(self._is_skirt[words], self.model)
-        return [self._measure(t_ns, words, blob) for blob in blobs[:MAX_CANDIDATES]]
+        blobs = blobs_at_horizon(self._is_skirt[words], self.model.horizon_row)
+        return [self._measure(t_ns, words, blob, wall_light) for blob in blobs[:MAX_CANDIDATES]]
 
-    def _measure(self, t_ns: int, words: Words, blob: Blob) -> Sighting | Reason:
-        left_cut, right_cut = blob.left < BORDER_PX, blob.right > self.model.width - BORDER_PX
-        if left_cut or right_cut:
-            return self._measure_cut_off(t_ns, words, blob, left_cut, right_cut)
-        if not looks_like_skirt(blob, self.model):
+    def _measure(self, t_ns: int, words: Words, blob: Blob, wall_light: float) -> Sighting | Reason:
+        if not (blob.is_filled and self._finder.has_body_above(words, blob, wall_light)):
             return Reason.UNLIKE
+        left_cut, right_cut = blob.left < BORDER_PX, blob.right > self.model.width - BORDER_PX
+        if left_cut and right_cut:
+            return Reason.CUT_OFF
         left, right = self._edges(words, blob)
-        if left is None or right is None:
-            return Reason.HIDDEN
-        left_rad, right_rad = self.model.bearing_rad(left), self.model.bearing_rad(right)
-        range_m, bearing_rad = range_and_bearing(left_rad, right_rad)
-        spread = covariance(range_m, self._edge_sd_rad, MOUNTING_SD_RAD)
-        return Sighting(t_ns, range_m, bearing_rad, spread, left, right)
+        left, right = None if left_cut else left, None if right_cut else right
+        if left is not None and right is not None:
+            return self._from_both_edges(t_ns, blob, left, right)
+        if (left is None and right is None) or not fits_part_of_skirt(blob, self.model, self._tolerance_px):
+            return Reason.CUT_OFF if left_cut or right_cut else Reason.HIDDEN
+        return self._from_one_edge(t_ns, blob, left, right)
 
     def _edges(self, words: Words, blob: Blob) -> tuple[float | None, float | None]:
         if not self.profile.sub_pixel:
@@ -180,30 +180,33 @@ class Seer:
         edges = self._finder.find(words, blob)
         return edges.left, edges.right
 
-    def _measure_cut_off(
-        self, t_ns: int, words: Words, blob: Blob, left_cut: bool, right_cut: bool
-    ) -> Sighting | Reason:
-        """One side is outside the image: range from the height, bearing from the other side."""
-        if not looks_like_skirt_cut_off(blob, self.model):
-            return Reason.CUT_OFF
-        left, right = self._edges(words, blob)
-        left, right = None if left_cut else left, None if right_cut else right
-        edge = right if left is None else left
-        if edge is None:
-            return Reason.CUT_OFF
-        side = -1 if left is None else 1
+    def _from_both_edges(self, t_ns: int, blob: Blob, left: float, right: float) -> Sighting | Reason:
+        if right - left < MIN_WIDTH_PX:
+            return Reason.UNLIKE
+        left_rad, right_rad = self.model.bearing_rad(left), self.model.bearing_rad(right)
+        range_m, bearing_rad = range_and_bearing(left_rad, right_rad)
+        if not fits_skirt(blob, self.model, range_m, bearing_rad, self._tolerance_px):
+            return Reason.UNLIKE
+        spread = covariance(range_m, self._edge_sd_rad, MOUNTING_SD_RAD)
+        return Sighting(t_ns, range_m, bearing_rad, spread, left, right)
+
+    def _from_one_edge(self, t_ns: int, blob: Blob, left: float | None, right: float | None) -> Sighting:
+        """The range from the height of the patch, the bearing from the side that is seen."""
         middle_rad = self.model.bearing_rad((blob.left + blob.right - 1) / 2)
-        depth_m = self.model.focal_px * (SKIRT_TOP_M - SKIRT_BOTTOM_M) / blob.height
-        range_m = depth_m / math.cos(middle_rad) + SKIRT_RADIUS_M
+        range_m = depth_from_height_m(blob, self.model) / math.cos(middle_rad) + SKIRT_RADIUS_M
+        range_sd_m = range_m * HEIGHT_SD_PX / blob.height
+        side, edge = (1, left) if left is not None else (-1, right)
+        assert edge is not None
         bearing_rad = self.model.bearing_rad(edge) - side * half_angle_rad(range_m)
-        range_sd_m = range_m * 1.5 / blob.height
         spread = covariance_of_one_edge(range_m, range_sd_m, self._edge_sd_rad, MOUNTING_SD_RAD, side)
         return Sighting(t_ns, range_m, bearing_rad, spread, left, right, cut_off=True)
 
     def _choose(self, t_ns: int, candidates: list[Sighting | Reason]) -> Sighting | Reason:
         seen = [candidate for candidate in candidates if isinstance(candidate, Sighting)]
         if not seen:
-            return next((candidate for candidate in candidates if isinstance(candidate, Reason)), Reason.NOT_SEEN)
+            return next(
+                (candidate for candidate in candidates if isinstance(candidate, Reason)), Reason.NOT_SEEN
+            )
         ranked = sorted((self._gate.strain(_place(sighting)), i) for i, sighting in enumerate(seen))
         if ranked[0][0] > 1:
             return Reason.JUMPED
