@@ -10,6 +10,7 @@ from google.protobuf.message import Message
 from server.batch import Batch
 from swarm import keys
 from swarm.clock import NS_PER_S
+from swarm.errors import RunFailedError
 from swarm.experiment import Experiment
 from swarm.feed import Feed
 from swarm.keys import Topic, topic_of
@@ -17,6 +18,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header
 
 RUN_STATE_PERIOD_NS = NS_PER_S
+STUCK_AFTER_NS = 600 * NS_PER_S
 Publish = Callable[[Topic[Any], Message, str], None]
 
 
@@ -31,6 +33,7 @@ class Conductor:
         self._best_paths = Feed(keys.BEST_PATH)
         self._feeds: dict[Topic[Any], Feed[Any]] = {keys.MOVE: self._moves, keys.BEST_PATH: self._best_paths}
         self._state_due_ns = 0
+        self._moved_ns = 0
         self._ending = False
         self.moves = {robot.id: 0 for robot in experiment.robot}
         """Moves made so far, by robot."""
@@ -51,6 +54,7 @@ class Conductor:
                 feed.put(item.key, Header(item.epoch, item.sequence, item.publish_t_ns), item.payload)
         for move in self._moves.take():
             self.moves[move.robot] = move.message.number
+            self._moved_ns = batch.t_ns
         for best in self._best_paths.take():
             self.best_path[best.robot] = best.message.length
         self.bad_messages = sum(feed.bad for feed in self._feeds.values())
@@ -60,6 +64,13 @@ class Conductor:
         if batch.t_ns >= self._state_due_ns or self._ending:
             self._state_due_ns = batch.t_ns + RUN_STATE_PERIOD_NS
             self.announce(pb.RunState.ENDED if self._ending else pb.RunState.RUNNING)
+
+    def check_progress(self, t_ns: int) -> None:
+        """RunFailedError if no robot has moved for ten minutes of the run: a simulation waits for nobody."""
+        if t_ns - self._moved_ns > STUCK_AFTER_NS:
+            behind = [robot for robot, moves in self.moves.items() if moves < self._experiment.run.moves]
+            minutes = STUCK_AFTER_NS // NS_PER_S // 60
+            raise RunFailedError(f"no robot has moved for {minutes} min of the run; waiting: {', '.join(behind)}")
 
     def announce(self, phase: pb.RunState.Phase.ValueType) -> None:
         """Tell everyone the phase of the trial."""

@@ -88,6 +88,7 @@ class Trial:
         self._t_ns = batch.t_ns
         self._batches += 1
         if self._batches % self._batches_between_flushes == 0:
+            self._conductor.check_progress(batch.t_ns)
             self._recorder.flush()
             self._show(self._conductor, self._t_ns / 1e9)
 

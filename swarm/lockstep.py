@@ -37,7 +37,7 @@ class LockstepLink:
         self._process = process
         self._ticks = bus.inbox(LOCKSTEP_TICK.format(process=process), Delivery.EVERY, wake_s=WAKE_S)
         self._done = bus.sender(LOCKSTEP_DONE, Delivery.EVERY)
-        self._feeds: dict[str, Feed[Any]] = {}
+        self._feeds: list[tuple[str, Feed[Any]]] = []
         self._routes: dict[str, tuple[Feed[Any], ...]] = {}
         self._sequencer = Sequencer()
         self._items: list[pb.Item] = []
@@ -48,7 +48,7 @@ class LockstepLink:
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
         feed = Feed(topic)
-        self._feeds[topic.key(robot)] = feed
+        self._feeds.append((topic.key(robot), feed))
         return feed
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
@@ -92,7 +92,7 @@ class LockstepLink:
             process=self._process,
             pid=os.getpid(),
             host=socket.gethostname(),
-            subscriptions=list(self._feeds),
+            subscriptions=sorted({key for key, _ in self._feeds}),
         )
         self._done.put(pb.Done(process=self._process, hello=hello).SerializeToString())
 
@@ -100,7 +100,7 @@ class LockstepLink:
         self.keys_received.add(item.key)
         feeds = self._routes.get(item.key)
         if feeds is None:
-            feeds = tuple(feed for key, feed in self._feeds.items() if key_matches(key, item.key))
+            feeds = tuple(feed for key, feed in self._feeds if key_matches(key, item.key))
             self._routes[item.key] = feeds
         for feed in feeds:
             feed.put(item.key, Header(item.epoch, item.sequence, t_ns), item.payload)
