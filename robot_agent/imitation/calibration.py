@@ -18,9 +18,9 @@ from robot_agent.imitation.colour import OTHER, PALE, SKIRT, ColourTable
 from swarm.errors import UserError
 
 MIN_SATURATION = 0.15
-PART_OF_SATURATION = 0.22
-"""A pixel that is half wall and half skirt has about a fifth of the skirt's saturation."""
-MIN_HUE_TOLERANCE_RAD = 0.14
+PART_OF_SATURATION = 0.45
+"""Of the skirt's: lower than this, pixels of the wall beside it would count, unevenly, as skirt."""
+HUE_TOLERANCE_RAD = (0.14, 0.22)
 HUE_DEVIATIONS = 4.0
 PART_OF_LIGHT = 0.45
 PALE_SATURATION = 0.12
@@ -84,7 +84,7 @@ def _kinds(
     if abs(middle) < MIN_SATURATION:
         raise UserError(f"the middle of the image has no colour of its own: {_ADVICE}")
     spread_rad = np.std(np.angle(seen / middle))
-    tolerance_rad = max(MIN_HUE_TOLERANCE_RAD, HUE_DEVIATIONS * float(spread_rad))
+    tolerance_rad = float(np.clip(HUE_DEVIATIONS * spread_rad, *HUE_TOLERANCE_RAD))
     light = colours.max(axis=1)
     is_skirt = (
         (np.abs(np.angle(around / middle)) < tolerance_rad)

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 MIN_AREA_PART = 6e-4
 """Of the image; a skirt that is 1.7 m away fills twice this."""
 MIN_FILL = 0.6
+USUAL_PART = 0.2
+RAGGED_PX = 2
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,34 @@ class Blob:
         return self.area >= MIN_FILL * self.width * self.height
 
 
+def trimmed(blob: Blob, mask: NDArray[np.uint8]) -> Blob:
+    """The blob less what sticks out at its sides: columns that hold much more or less of it than most do.
+
+    A thing of the same colour that touches the skirt is lower or higher than the skirt, or joined to it by
+    a few pixels. The two columns at a side that the blur makes ragged stay.
+    """
+    columns = mask[blob.top : blob.bottom, blob.left : blob.right]
+    counts = columns.sum(axis=0, dtype=np.int32)
+    usual = np.abs(counts - np.median(counts)) <= 1.5 + USUAL_PART * blob.height
+    first, last = _longest_run(usual)
+    first, last = first if first > RAGGED_PX else 0, last if blob.width - last > RAGGED_PX else blob.width
+    if last - first in (blob.width, 0) or first > last:
+        return blob
+    rows = np.flatnonzero(columns[:, first:last].any(axis=1))
+    top, bottom = blob.top + int(rows[0]), blob.top + int(rows[-1]) + 1
+    return Blob(blob.left + first, top, blob.left + last, bottom, int(counts[first:last].sum()))
+
+
+def _longest_run(true: NDArray[np.bool_]) -> tuple[int, int]:
+    """First and one past the last index of the longest run of True; (0, 0) if there is none."""
+    steps = np.flatnonzero(np.diff(true, prepend=False, append=False))
+    starts, ends = steps[::2], steps[1::2]
+    if not starts.size:
+        return 0, 0
+    longest = int(np.argmax(ends - starts))
+    return int(starts[longest]), int(ends[longest])
+
+
 def blobs_at_horizon(mask: NDArray[np.uint8], horizon_row: float) -> list[Blob]:
     """The patches of non-zero pixels that are large and reach across the horizon, the largest first."""
     _, _, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8, ltype=cv2.CV_16U)
@@ -44,4 +74,5 @@ def blobs_at_horizon(mask: NDArray[np.uint8], horizon_row: float) -> list[Blob]:
     keep = (areas >= MIN_AREA_PART * mask.size) & (tops <= horizon_row) & (tops + heights > horizon_row)
     rows = stats[1:][keep].tolist()
     found = [Blob(left, top, left + wide, top + high, area) for left, top, wide, high, area in rows]
+    found = [trimmed(blob, mask) for blob in found]
     return sorted(found, key=lambda blob: blob.area, reverse=True)

@@ -20,7 +20,9 @@ from robot_agent.imitation.components import Blob
 REACH_PX = 3
 """Half the window around an edge; more than the blur, so that it holds the whole step."""
 PLATEAU_PX = 5
-MIN_PALE = 0.6
+MAX_SHIFT_PX = 3.0
+"""Farther from the patch's border than the blur explains is the edge of another thing."""
+MIN_PALE = 0.75
 MIN_STEP = 0.03
 PART_OF_BODY = 0.3
 """Of the skirt's height: how far up to look for the body."""
@@ -78,14 +80,22 @@ class EdgeFinder:
 
     def _edge(self, band: Words, start: int) -> float | None:
         """The left edge near column `start` of rows that end within the skirt."""
+        edge = self._edge_at(band, start)
+        if edge is not None and abs(edge + 0.5 - start) > 1:
+            edge = self._edge_at(band, round(edge + 0.5))
+        return edge if edge is not None and abs(edge + 0.5 - start) < MAX_SHIFT_PX else None
+
+    def _edge_at(self, band: Words, start: int) -> float | None:
+        """The edge within the window around `start`."""
         outside = slice(max(0, start - REACH_PX - PLATEAU_PX), start - REACH_PX)
         if start - REACH_PX < 2:
             return None
         near = np.ascontiguousarray(band[:, outside.start : start + REACH_PX + PLATEAU_PX])
-        if self._pale[near[:, : outside.stop - outside.start]].mean() < MIN_PALE:
+        outer = outside.stop - outside.start
+        if self._pale[near[:, max(0, outer - PLATEAU_PX + 1) : outer + 1]].mean() < MIN_PALE:
             return None
         profile = self._light[near].mean(axis=0)
-        return _step(profile, outside.stop - outside.start, outside.start)
+        return _step(profile, outer, outside.start)
 
 
 def _step(profile: NDArray[np.float32], first: int, offset: int) -> float | None:

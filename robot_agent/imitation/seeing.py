@@ -91,6 +91,7 @@ class Profile:
     """How edges are measured: to a fraction of a pixel, or as the border of the patch in whole pixels.
 
     `tolerance_px` is how far a patch's upper and lower border may be from where a skirt's would be.
+    `shrunk_px` is how much narrower than the skirt its patch is, for the blur at its sides.
     `edge_sd_px` is the standard deviation of an edge's error, measured by tests/benchmarks/seeing.py.
     """
 
@@ -99,11 +100,12 @@ class Profile:
     sub_pixel: bool
     edge_sd_px: float
     tolerance_px: float
+    shrunk_px: float = 0.0
 
 
 PROFILES = {
     "best": Profile(320, 240, sub_pixel=True, edge_sd_px=0.08, tolerance_px=1.8),
-    "paper": Profile(160, 120, sub_pixel=False, edge_sd_px=0.5, tolerance_px=3.5),
+    "paper": Profile(160, 120, sub_pixel=False, edge_sd_px=0.5, tolerance_px=3.5, shrunk_px=1.45),
 }
 
 
@@ -157,7 +159,7 @@ class Seer:
 
     def _candidates(self, t_ns: int, words: Words, wall_light: float) -> list[Sighting | Reason]:
         """An answer for each patch of the skirt's colour, the largest first."""
-        blobs = blobs_at_horizon(self._is_skirt[words], self.model.horizon_row)
+        blobs = blobs_at_horizon(self._is_skirt.take(words, mode="clip"), self.model.horizon_row)
         return [self._measure(t_ns, words, blob, wall_light) for blob in blobs[:MAX_CANDIDATES]]
 
     def _measure(self, t_ns: int, words: Words, blob: Blob, wall_light: float) -> Sighting | Reason:
@@ -176,7 +178,8 @@ class Seer:
 
     def _edges(self, words: Words, blob: Blob) -> tuple[float | None, float | None]:
         if not self.profile.sub_pixel:
-            return blob.left - 0.5, blob.right - 0.5
+            aside = self.profile.shrunk_px / 2
+            return blob.left - 0.5 - aside, blob.right - 0.5 + aside
         edges = self._finder.find(words, blob)
         return edges.left, edges.right
 

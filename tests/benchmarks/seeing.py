@@ -32,6 +32,7 @@ ROOMS = (Rectangle(0.0, 0.0, 1.2, 1.2), Rectangle(1.2, 0.0, 2.4, 1.2))
 CALIBRATION_RANGES_M = (0.25, 0.3, 0.4)
 FRAMES_OF_A_CAMERA = 100
 FRAME_NS = 200_000_000
+OBSERVER = (1.18, 0.02)
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,9 @@ def in_view(model: CameraModel, own: Pose, body: Pose, margin_px: float = 8.0) -
     return place.x_m > 0 and left > margin_px and right < model.width - 1 - margin_px
 
 
-def look_at(camera: SimulatedCamera, seer: Seer, own: Pose, scene: Scene, t_ns: int, turn_rad_s: float) -> Look:
+def look_at(
+    camera: SimulatedCamera, seer: Seer, own: Pose, scene: Scene, t_ns: int, turn_rad_s: float
+) -> Look:
     """Render the scene, whose first body is the demonstrator, and look for it."""
     model = camera.model
     place = model.pose(own).relative(scene.bodies[0].pose)
@@ -118,50 +121,44 @@ def _apart(model: CameraModel, own: Pose, body: Pose, others: tuple[Pose, ...]) 
     return True
 
 
-def driving(
-    profile: str, condition: str, skirt: str, frames: int, seed: int, twins: int
-) -> Iterator[Look]:
-    """Drives at 10 cm/s and 5 frames a second, the observer turning after it, past posts of the skirt's colour."""
+def driving(profile: str, condition: str, skirt: str, frames: int, seed: int, twins: int) -> Iterator[Look]:
+    """Drives at 10 cm/s and 5 frames a second, the observer turning after it, among posts of the skirt's colour."""
     number = 0
     while number < frames:
         camera, seer = make_pair(profile, condition, skirt, seed + number)
         rng = np.random.default_rng([seed, number])
-        posts = tuple(twin_post(skirt, rng) for _ in range(twins))
-        for own, body, step in drive(camera.model, rng):
+        path = list(drive(rng))
+        posts = tuple(twin_post(skirt, path, rng) for _ in range(twins))
+        for step, body in enumerate(path):
+            own = Pose(
+                *OBSERVER, math.atan2(body.y_m - OBSERVER[1], body.x_m - OBSERVER[0]) + rng.uniform(-0.1, 0.1)
+            )
+            scene = Scene(ROOMS, (Body(body, skirt),), posts)
+            yield look_at(camera, seer, own, scene, step * FRAME_NS, 0.0)
             number += 1
-            yield look_at(camera, seer, own, Scene(ROOMS, (Body(body, skirt),), posts), step * FRAME_NS, 0.0)
 
 
-def twin_post(skirt: str, rng: np.random.Generator) -> Post:
-    """A post of the skirt's colour anywhere in the compartment, of any likely size."""
-    return Post(
-        float(rng.uniform(0.05, 0.95)),
-        float(rng.uniform(0.25, 1.15)),
-        skirt,
-        float(rng.uniform(0.01, 0.04)),
-        float(rng.uniform(0.03, 0.12)),
-    )
+def twin_post(skirt: str, path: list[Pose], rng: np.random.Generator) -> Post:
+    """A post of the skirt's colour and of any likely size that stands in nobody's way."""
+    while True:
+        x_m, y_m = rng.uniform(0.03, 1.17, 2)
+        clear_m = min(math.hypot(x_m - pose.x_m, y_m - pose.y_m) for pose in path)
+        if clear_m > 0.08 and math.hypot(x_m - OBSERVER[0], y_m - OBSERVER[1]) > 0.2:
+            return Post(float(x_m), float(y_m), skirt, rng.uniform(0.008, 0.03), rng.uniform(0.03, 0.12))
 
 
-def drive(model: CameraModel, rng: np.random.Generator) -> Iterator[tuple[Pose, Pose, int]]:
-    """Own pose, demonstrator's pose and frame number along five moves of 12 cm with short rests."""
-    column, row = int(rng.integers(0, 7)), int(rng.integers(0, 7))
-    x_m, y_m, step, heading_rad = 0.06 + 0.12 * column, 1.14 - 0.12 * row, 0, 0.0
-    for move in range(5):
-        east, south = ((1, 1), (1, 0), (0, 1), (-1, 1))[int(rng.integers(4))] if move else (0, 0)
-        if not (0.05 < x_m + 0.12 * east < 1.0 and y_m - 0.12 * south > 0.2):
+def drive(rng: np.random.Generator) -> Iterator[Pose]:
+    """The demonstrator at each frame of five moves, with rests between them."""
+    column, row = (int(number) for number in rng.integers(0, 7, 2))
+    x_m, y_m = 0.06 + 0.12 * column, 1.14 - 0.12 * row
+    for _ in range(5):
+        east, south = ((1, 1), (1, 0), (0, 1), (-1, 1), (0, -1))[int(rng.integers(5))]
+        if not (0.05 < x_m + 0.12 * east < 1.0 and 0.2 < y_m - 0.12 * south < 1.15):
             continue
-        length_m = 0.12 * math.hypot(east, south)
-        pieces = max(1, math.ceil(length_m / 0.02))
+        pieces = math.ceil(6 * math.hypot(east, south))
         for piece in range(1, pieces + 3):
             part = min(piece, pieces) / pieces
-            body = Pose(x_m + part * 0.12 * east, y_m - part * 0.12 * south, 0.0)
-            bearing_rad = math.atan2(body.y_m - 0.02, body.x_m - 1.18)
-            heading_rad = bearing_rad + float(rng.uniform(-0.1, 0.1))
-            own = Pose(1.18, 0.02, heading_rad)
-            if model.pose(own).distance_m(body) > 0.2:
-                yield own, body, step
-            step += 1
+            yield Pose(x_m + part * 0.12 * east, y_m - part * 0.12 * south, 0.0)
         x_m, y_m = x_m + 0.12 * east, y_m - 0.12 * south
 
 
@@ -183,7 +180,9 @@ def accuracy(looks: list[Look], model: CameraModel) -> dict[str, float]:
         "range_bias_of_bound": float(np.max(_bin_bias(ranges, range_errors, px_m))),
         "bearing_sd_deg": math.degrees(float(bearing_errors.std())),
         "bearing_bias_deg": math.degrees(float(bearing_errors.mean())),
-        "range_error_of_sd": float(np.std([e / s.range_sd_m for e, (_, s) in zip(range_errors, pairs, strict=True)])),
+        "range_error_of_sd": float(
+            np.std([e / s.range_sd_m for e, (_, s) in zip(range_errors, pairs, strict=True)])
+        ),
         "bearing_error_of_sd": float(
             np.std([e / s.bearing_sd_rad for e, (_, s) in zip(bearing_errors, pairs, strict=True)])
         ),
@@ -194,7 +193,8 @@ def _bin_bias(ranges: np.ndarray, errors: np.ndarray, px_m: np.ndarray) -> list[
     """Bias over its bound (0.5 % of the range and 0.05 px of width), in bins of range."""
     bins = np.digitize(ranges, [0.6, 0.8, 1.0, 1.2, 1.35])
     return [
-        abs(errors[bins == number].mean()) / (0.005 * ranges[bins == number] + 0.05 * px_m[bins == number]).mean()
+        abs(errors[bins == number].mean())
+        / (0.005 * ranges[bins == number] + 0.05 * px_m[bins == number]).mean()
         for number in range(6)
         if np.any(bins == number)
     ]
@@ -239,7 +239,9 @@ def main() -> None:
     cv2.setNumThreads(1)
     chosen = (options.profile, options.conditions, options.skirt, options.frames, options.seed)
     looks = list(scattered(*chosen, options.format))
-    model = load_camera_model(CALIBRATION).scaled(PROFILES[options.profile].width, PROFILES[options.profile].height)
+    model = load_camera_model(CALIBRATION).scaled(
+        PROFILES[options.profile].width, PROFILES[options.profile].height
+    )
     drives = list(driving(*chosen, twins=2))
     figures = {
         "benchmark": "seeing",
