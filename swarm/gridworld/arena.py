@@ -45,6 +45,20 @@ def neighbours(arena: Arena) -> NDArray[np.int16]:
 
 
 @cache
+def ways(arena: Arena) -> NDArray[np.uint8]:
+    """The set of moves that lead out of each state, one bit a move (states,)."""
+    leads = neighbours(arena) != np.arange(arena.grid.states)[:, np.newaxis]
+    return np.packbits(leads, axis=1, bitorder="little").ravel()
+
+
+@cache
+def offsets(arena: Arena) -> NDArray[np.uint64]:
+    """What each move adds to the number of the state, modulo 2^64 (moves,)."""
+    steps = [move.rows * arena.grid.columns + move.columns for move in Move]
+    return np.array(steps, np.int64).view(np.uint64)
+
+
+@cache
 def distances(arena: Arena) -> NDArray[np.int32]:
     """Moves from each state to the goal by a shortest path; -1 where there is none (states,).
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from swarm.geometry import MOVES
 from swarm.gridworld import kernels
-from swarm.gridworld.arena import Arena, expert_values, neighbours
+from swarm.gridworld.arena import Arena, expert_values, offsets, ways
 from swarm.gridworld.condition import (
     AccessEachOther,
     AccessExpert,
@@ -62,7 +63,9 @@ class Simulation:
     def __init__(self, condition: Condition, seed: int, run: int) -> None:
         self.condition = condition
         arena, teacher = condition.arena, condition.teacher
-        self.world = World(neighbours(arena).ravel(), arena.grid.start, arena.grid.goal)
+        self.world = World(
+            ways(arena), offsets(arena), np.uint64(arena.grid.start), np.uint64(arena.grid.goal)
+        )
         self.rules, self.two_rules = rules(condition)
         self.one, self.two = (new_agent(condition, seed, run, name) for name in ("one", "two"))
         self.found = best_path(arena, condition.point_limit, seed, run, "one")
@@ -147,9 +150,11 @@ def rules(condition: Condition) -> tuple[Rules, Rules]:
         case NoTeacher():
             pass
 
+    explores_below = np.uint64(math.ceil(condition.epsilon * 2**53))
+
     def made(watched: int, seen: bool) -> Rules:
         return Rules(
-            ALPHA, GAMMA, condition.epsilon, condition.beta, APPROACHES[condition.approach],
+            ALPHA, GAMMA, explores_below, condition.beta, APPROACHES[condition.approach],
             watched, every, moves, accesses, seen,
         )  # fmt: skip
 
@@ -168,7 +173,7 @@ def new_agent(condition: Condition, seed: int, run: int, name: str) -> Agent:
         q=np.zeros(states * MOVES),
         best=np.zeros(states),
         greedy=np.full(states, kernels.ALL_MOVES, np.uint8),
-        place=np.full(1, condition.arena.grid.start, np.int64),
+        place=np.full(1, condition.arena.grid.start, np.uint64),
         stream=np.array([stream_word(seed, run, name, "choices")], np.uint64),
         watching=np.array([stream_word(seed, run, name, "watching")], np.uint64),
         paths=np.zeros((capacity, moves), np.uint8),
@@ -188,7 +193,7 @@ def new_agent(condition: Condition, seed: int, run: int, name: str) -> Agent:
 def best_path(arena: Arena, points: int, seed: int, run: int, name: str) -> BestPath:
     """Room for `points` evaluations; their random numbers are their own and disturb no learning."""
     return BestPath(
-        route=np.zeros(arena.longest_path, np.int16),
+        route=np.zeros(arena.longest_path, np.uint16),
         sets=np.zeros(arena.longest_path, np.uint8),
         length=np.zeros(1, np.int64),
         stream=np.array([stream_word(seed, run, name, "best path")], np.uint64),

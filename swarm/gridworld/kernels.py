@@ -29,12 +29,16 @@ SIZE = np.array([len(members) for members in SETS], np.uint8)
 """How many actions a set has (256,)."""
 MEMBER = np.array([members + [0] * (MOVES - len(members)) for members in SETS], np.uint8).ravel()
 """The k-th action of a set, at 8 x set + k (2048,)."""
+FIRST_MEMBER = MEMBER[::MOVES].copy()
+"""The first action of a set (256,)."""
 
 NO_REPLAY = -1
 FIXED, COMPLETION, AVERAGE_Q = 0, 1, 2
 WATCHES_NOBODY, WATCHES_EXPERT, WATCHES_OTHER = 0, 1, 2
 
-_GOLDEN, _FIRST, _SECOND = np.uint64(GOLDEN), np.uint64(FIRST), np.uint64(SECOND)
+# Places, actions and sets of actions are unsigned: numba would look whether a signed index is negative.
+_U = np.uint64
+_GOLDEN, _FIRST, _SECOND, _MOVES, _ONE = _U(GOLDEN), _U(FIRST), _U(SECOND), _U(MOVES), _U(1)
 
 # Without numba's reference counts, which cost far more than the learning: nothing here allocates.
 _OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
@@ -53,11 +57,14 @@ def _inlined(function: Function) -> Function:
 
 
 class World(NamedTuple):
-    """The arena: where each move leads (states x moves,), and the two ends of a run."""
+    """The arena and the two ends of a run."""
 
-    neighbours: NDArray[np.int16]
-    start: int
-    goal: int
+    ways: NDArray[np.uint8]
+    """The set of moves that lead out of each cell (states,)"""
+    offsets: NDArray[np.uint64]
+    """What each move adds to the number of the cell (moves,)"""
+    start: np.uint64
+    goal: np.uint64
 
 
 class Rules(NamedTuple):
@@ -65,7 +72,8 @@ class Rules(NamedTuple):
 
     alpha: float
     gamma: float
-    epsilon: float
+    explores_below: np.uint64
+    """Epsilon in units of 2^-53, rounded up: an agent explores if 53 random bits are below it"""
     beta: float
     approach: int
     watches: int
@@ -98,7 +106,7 @@ class Agent(NamedTuple):
     """max_a Q(s, a) (states,)"""
     greedy: NDArray[np.uint8]
     """The set of actions that have that value (states,)"""
-    place: NDArray[np.int64]
+    place: NDArray[np.uint64]
     arrivals: NDArray[np.int64]
     stream: NDArray[np.uint64]
     watching: NDArray[np.uint64]
@@ -131,7 +139,7 @@ class Agent(NamedTuple):
 class BestPath(NamedTuple):
     """The last greedy path found without a random choice, and the sets that it rests on."""
 
-    route: NDArray[np.int16]
+    route: NDArray[np.uint16]
     sets: NDArray[np.uint8]
     length: NDArray[np.int64]
     """0 if the last path met a tie"""
@@ -141,34 +149,68 @@ class BestPath(NamedTuple):
 
 
 @_inlined
+def _mixed(word: Word) -> Word:
+    """The random bits that SplitMix64 makes of its state."""
+    word = (word ^ (word >> _U(30))) * _FIRST
+    word = (word ^ (word >> _U(27))) * _SECOND
+    return word ^ (word >> _U(31))
+
+
+@_inlined
 def _bits(stream: NDArray[np.uint64]) -> Word:
-    word = stream[0] + _GOLDEN
-    stream[0] = word
-    word = (word ^ (word >> np.uint64(30))) * _FIRST
-    word = (word ^ (word >> np.uint64(27))) * _SECOND
-    return word ^ (word >> np.uint64(31))
+    """`SplitMix64.bits`."""
+    stream[0] += _GOLDEN
+    return _mixed(stream[0])
 
 
 @_inlined
 def _random(stream: NDArray[np.uint64]) -> Real:
-    return np.float64(np.int64(_bits(stream) >> np.uint64(11))) * 2.0**-53
+    return np.float64(np.int64(_bits(stream) >> _U(11))) * 2.0**-53
 
 
 @_inlined
-def _integer(high: Whole, stream: NDArray[np.uint64]) -> Whole:
-    return np.int64(((_bits(stream) >> np.uint64(32)) * np.uint64(high)) >> np.uint64(32))
+def _integer(high: Whole, bits: Word) -> Word:
+    """`SplitMix64.integers`, of bits already drawn."""
+    return ((bits >> _U(32)) * _U(high)) >> _U(32)
 
 
 @_inlined
-def _pick(actions: Whole, stream: NDArray[np.uint64]) -> Whole:
+def _member(actions: Word, bits: Word) -> Word:
     """A member of a set of actions, at random."""
-    return np.int64(MEMBER[np.int64(actions) * MOVES + _integer(SIZE[actions], stream)])
+    return _U(MEMBER[actions * _MOVES + _integer(SIZE[actions], bits)])
 
 
 @_inlined
-def _greedy(actions: Whole, stream: NDArray[np.uint64]) -> Whole:
+def _has_tie(actions: Word) -> Truth:
+    return actions & (actions - _ONE) != 0
+
+
+@_inlined
+def _greedy(actions: Word, stream: NDArray[np.uint64]) -> Word:
     """`QTable.greedy`."""
-    return np.int64(MEMBER[np.int64(actions) * MOVES]) if SIZE[actions] == 1 else _pick(actions, stream)
+    return _member(actions, _bits(stream)) if _has_tie(actions) else _U(FIRST_MEMBER[actions])
+
+
+@_inlined
+def _epsilon_greedy(actions: Word, rules: Rules, bits: Word, more_bits: Word) -> Word:
+    """`Controller._epsilon_greedy`, out of a set of greedy actions; no branch waits for a random number."""
+    any_move = _integer(MOVES, more_bits)
+    if actions == ALL_MOVES:
+        return any_move
+    best = _member(actions, more_bits) if _has_tie(actions) else _U(FIRST_MEMBER[actions])
+    return any_move if bits >> _U(11) < rules.explores_below else best
+
+
+@_inlined
+def _explore_or_not(agent: Agent, rules: Rules) -> Word:
+    actions = _U(agent.greedy[agent.place[0]])
+    return _epsilon_greedy(actions, rules, _bits(agent.stream), _bits(agent.stream))
+
+
+@_inlined
+def _entered(world: World, place: Word, action: Word) -> Word:
+    """`Grid.neighbour`, or the place itself if the move is blocked."""
+    return place + world.offsets[action] if (_U(world.ways[place]) >> action) & _ONE else place
 
 
 @_inlined
@@ -232,33 +274,25 @@ def _forget(agent: Agent) -> None:
 
 
 @_inlined
-def _epsilon_greedy(agent: Agent, rules: Rules) -> Whole:
-    actions = agent.greedy[agent.place[0]]
-    if rules.epsilon > _random(agent.stream):
-        actions = np.uint8(ALL_MOVES)
-    return _pick(actions, agent.stream)
-
-
-@_inlined
-def _choose(agent: Agent, other: Agent, rules: Rules) -> Whole:
+def _choose(agent: Agent, other: Agent, rules: Rules) -> Word:
     """`Controller.choose`."""
     last = False
     if agent.replayed[0] == NO_REPLAY:
         path = _choose_path(agent)
         if rules.beta * agent.ratios[path] <= _random(agent.stream):
-            return _epsilon_greedy(agent, rules)
+            return _explore_or_not(agent, rules)
         agent.replayed[0], agent.place_in_path[0], agent.change[0] = path, 0, 0.0
     else:
         agent.place_in_path[0] += 1
         last = agent.place_in_path[0] == agent.lengths[agent.replayed[0]] - 1
     place = agent.place[0]
     if rules.accesses:
-        action = _greedy(other.greedy[place], agent.stream)
+        action = _greedy(_U(other.greedy[place]), agent.stream)
     else:
-        action = np.int64(agent.paths[agent.replayed[0], agent.place_in_path[0]])
-    if not last and not (agent.greedy[place] >> action) & 1:
+        action = _U(agent.paths[agent.replayed[0], agent.place_in_path[0]])
+    if not last and not (_U(agent.greedy[place]) >> action) & _ONE:
         _end(agent, rules, False)
-        return _epsilon_greedy(agent, rules)
+        return _explore_or_not(agent, rules)
     return action
 
 
@@ -273,16 +307,14 @@ def _end(agent: Agent, rules: Rules, completed: Truth) -> None:
 
 
 @_inlined
-def _update(agent: Agent, rules: Rules, action: Whole, reward: Real, entered: Whole) -> Real:
+def _update(agent: Agent, rules: Rules, place: Word, action: Word, reward: Real, entered: Word) -> Real:
     """`QTable.update`, and the set of greedy actions with it."""
-    place = agent.place[0]
-    at = place * MOVES + action
+    at = place * _MOVES + action
     change = rules.alpha * (reward + rules.gamma * agent.best[entered] - agent.q[at])
     value = agent.q[at] + change
     agent.q[at] = value
-    best, this = agent.best[place], np.int64(1) << action
-    actions: Whole = np.int64(agent.greedy[place])
-    joined: Whole = actions | this if value == best else actions & ~this
+    best, actions, this = agent.best[place], _U(agent.greedy[place]), _ONE << action
+    joined = actions | this if value == best else actions & ~this
     actions = this if value > best else joined
     best = max(value, best)
     if actions == 0:
@@ -292,13 +324,15 @@ def _update(agent: Agent, rules: Rules, action: Whole, reward: Real, entered: Wh
 
 
 @_called
-def _scan(q: NDArray[np.float64], place: Whole) -> tuple[Real, Whole]:
+def _scan(q: NDArray[np.float64], place: Word) -> tuple[Real, Word]:
     """The best value of a state and the set of actions that have it."""
-    best, actions = q[place * MOVES], 1
+    best, actions = q[place * _MOVES], _ONE
     for action in range(1, MOVES):
-        value = q[place * MOVES + action]
-        actions = (1 << action) if value > best else actions | ((value == best) << action)
-        best = max(value, best)
+        value, this = q[place * _MOVES + _U(action)], _ONE << _U(action)
+        if value > best:
+            best, actions = value, this
+        elif value == best:
+            actions |= this
     return best, actions
 
 
@@ -306,18 +340,18 @@ def _scan(q: NDArray[np.float64], place: Whole) -> tuple[Real, Whole]:
 def prepare(agent: Agent) -> None:
     """Find the best values and greedy sets of a table that was filled from outside."""
     for place in range(len(agent.best)):
-        agent.best[place], agent.greedy[place] = _scan(agent.q, place)
+        agent.best[place], agent.greedy[place] = _scan(agent.q, _U(place))
 
 
 @_inlined
 def step(world: World, agent: Agent, other: Agent, rules: Rules) -> Truth:
     """Choose, move and learn once; whether the goal was reached, and the agent put back to the start."""
     imitates = agent.remembered[0] > 0
-    action = _choose(agent, other, rules) if imitates else _epsilon_greedy(agent, rules)
+    action = _choose(agent, other, rules) if imitates else _explore_or_not(agent, rules)
     place = agent.place[0]
-    entered = np.int64(world.neighbours[place * MOVES + action])
+    entered = _entered(world, place, action)
     arrived = entered == world.goal
-    change = _update(agent, rules, action, 1.0 if arrived else 0.0, entered)
+    change = _update(agent, rules, place, action, 1.0 if arrived else 0.0, entered)
     if imitates and agent.replayed[0] != NO_REPLAY:
         agent.change[0] += change
         completed = agent.place_in_path[0] == agent.lengths[agent.replayed[0]] - 1
@@ -331,7 +365,7 @@ def step(world: World, agent: Agent, other: Agent, rules: Rules) -> Truth:
 
 
 @_called
-def _leave_trail(agent: Agent, action: Whole, arrived: Truth) -> None:
+def _leave_trail(agent: Agent, action: Word, arrived: Truth) -> None:
     ring = len(agent.trail)
     agent.trail[agent.trail_moves[0] % ring] = action
     agent.trail_moves[0] += 1
@@ -349,7 +383,7 @@ def _copy_moves(agent: Agent, other: Agent, rules: Rules, expert_path: NDArray[n
     they come from a random place of its trajectory.
     """
     if rules.watches == WATCHES_EXPERT:
-        start = _integer(len(expert_path) - rules.moves + 1, agent.watching)
+        start = np.int64(_integer(len(expert_path) - rules.moves + 1, _bits(agent.watching)))
         remember(agent, rules, expert_path, start, rules.moves)
         return
     ring, moves = other.trail, other.trail_moves[0]
@@ -382,12 +416,12 @@ def best_path_length(world: World, agent: Agent, found: BestPath) -> Whole:
 
 @_called
 def _walk(world: World, agent: Agent, found: BestPath) -> Whole:
-    place, ties, length = np.int64(world.start), False, 0
+    place, ties, length = world.start, False, 0
     while place != world.goal and length < len(found.route):
-        actions = agent.greedy[place]
+        actions = _U(agent.greedy[place])
         found.route[length], found.sets[length] = place, actions
-        ties |= SIZE[actions] > 1
-        place = np.int64(world.neighbours[place * MOVES + _greedy(actions, found.stream)])
+        ties |= _has_tie(actions)
+        place = _entered(world, place, _greedy(actions, found.stream))
         length += 1
     found.length[0] = 0 if ties else length
     return length
@@ -397,6 +431,25 @@ def _walk(world: World, agent: Agent, found: BestPath) -> Whole:
 def _evaluate(world: World, agent: Agent, found: BestPath, point: Whole) -> None:
     if point < len(found.lengths):
         found.lengths[point] = best_path_length(world, agent, found)
+
+
+@_inlined
+def _practise(world: World, agent: Agent, rules: Rules, steps: Whole, reachings: Whole) -> Whole:
+    """`step` for an agent alone with an empty memory, many times, its state kept in registers."""
+    place, word = agent.place[0], agent.stream[0]
+    taken: Whole = 0
+    while taken < steps and agent.arrivals[0] < reachings:
+        bits, more_bits = _mixed(word + _GOLDEN), _mixed(word + _GOLDEN + _GOLDEN)
+        word += _GOLDEN + _GOLDEN
+        action = _epsilon_greedy(_U(agent.greedy[place]), rules, bits, more_bits)
+        entered = _entered(world, place, action)
+        arrived = entered == world.goal
+        _update(agent, rules, place, action, 1.0 if arrived else 0.0, entered)
+        place = world.start if arrived else entered
+        agent.arrivals[0] += arrived
+        taken += 1
+    agent.place[0], agent.stream[0] = place, word
+    return taken
 
 
 @_called
@@ -415,15 +468,20 @@ def run(
 
     The best paths are looked for every `limits.every` steps while there is room for them.
     """
-    point, due, taken = 0, limits.every, 0
+    alone = not limits.pair and rules.watches == WATCHES_NOBODY and one.remembered[0] == 0
+    point, due = 0, limits.every
+    taken: Whole = 0
     while taken < limits.steps and one.arrivals[0] < limits.reachings:
-        _step_and_copy(world, one, two, rules, expert_path)
-        if limits.pair:
-            _step_and_copy(world, two, one, two_rules, expert_path)
-        taken += 1
+        if alone:
+            taken += _practise(world, one, rules, min(due, limits.steps) - taken, limits.reachings)
+        else:
+            _step_and_copy(world, one, two, rules, expert_path)
+            if limits.pair:
+                _step_and_copy(world, two, one, two_rules, expert_path)
+            taken += 1
         if taken == due:
             _evaluate(world, one, found, point)
             _evaluate(world, two, two_found, point)
             point += 1
-            due += limits.every
+            due = due + limits.every if point < len(found.lengths) else limits.steps + 1
     return taken

@@ -36,7 +36,7 @@ GYM_SHARE = 20
 """The Gymnasium agent takes this many times fewer steps."""
 
 
-class GridWorld(gymnasium.Env[int, int]):
+class GridWorld(gymnasium.Env[Any, Any]):
     """The arena as a Gymnasium environment over a neighbour table."""
 
     def __init__(self) -> None:
