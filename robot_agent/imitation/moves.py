@@ -23,7 +23,7 @@ MOST_CELLS = 9
 STOP_SD_M = 0.008
 """How far from a cell's centre the demonstrator stops."""
 DRIFT_SD_M = 0.011
-"""How much the lattice seems to move from corner to corner: enough to follow an own heading 5 degrees wrong."""
+"""How much the lattice seems to move from corner to corner: enough to bear an own heading 5 degrees wrong."""
 PASSED_CHI2 = 1.0
 """Price of each cell that was passed without a stop."""
 STAY_CHI2 = 2.0
