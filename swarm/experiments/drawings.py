@@ -21,6 +21,8 @@ def draw(drawing: Drawing) -> Figure:
     _draw_cells(axes, drawing.grid)
     for label, (start, moves) in drawing.paths.items():
         _draw_path(axes, label, start, moves)
+        if not drawing.marks_ends:
+            axes.annotate(label, cells_of(start, moves)[-1], textcoords="offset points", xytext=(4, 6))
     if drawing.marks_ends:
         _mark(axes, drawing.grid, drawing.grid.start, "o", "agent")
         _mark(axes, drawing.grid, drawing.grid.goal, "*", "goal")
@@ -62,7 +64,6 @@ def _draw_path(axes: Axes, label: str, start: tuple[int, int], moves: tuple[Move
         xytext=(columns[-2], rows[-2]),
         arrowprops={"arrowstyle": "->", "color": line.get_color(), "linewidth": 1.5},
     )
-    axes.annotate(label, (columns[-1], rows[-1]), textcoords="offset points", xytext=(4, 4), fontsize="small")
 
 
 def _mark(axes: Axes, grid: Grid, state: int, marker: str, label: str) -> None:

@@ -1,0 +1,56 @@
+"""`swarm claims`: what the paper says of its simulations, beside what was measured."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import typer
+
+from swarm.cli.output import print_json, require_extra
+from swarm.cli.reproduce import Jobs, Json, Out, Runs, Scheduler, Seed, Steps, cores
+
+Figures = Annotated[
+    list[str] | None, typer.Argument(help="fig12, 12, all, or a study file.", show_default="all")
+]
+
+
+def judge_claims(words: Sequence[str], command: str, **asked: Any) -> tuple[dict[str, Any], list[str]]:
+    """The claims about the figures that `words` name, judged and reported.
+
+    Returns the result as plain data, and the same as lines to read; `asked` are the fields of `Settings`.
+    """
+    require_extra("lab", "numba", "scipy", "polars", "matplotlib")
+    from swarm.experiments.assessment import assess
+    from swarm.experiments.catalogue import chosen_names
+    from swarm.experiments.reports.as_json import as_json
+    from swarm.experiments.reports.rows import summary
+    from swarm.experiments.reports.write import write_report
+    from swarm.experiments.settings import Settings
+
+    assessment = assess(chosen_names(words or ["all"]), Settings(**asked))
+    files = {form: str(path) for form, path in write_report(assessment, command).items()}
+    lines = [f"{one.claim.figure}: {one.verdict.value}: {one.claim.text}" for one in assessment.judged]
+    return {**as_json(assessment), "files": files}, [*lines, summary(assessment), *files.values()]
+
+
+def claims_command(
+    figure: Figures = None,
+    runs: Runs = None,
+    steps: Steps = None,
+    seed: Seed = 1,
+    out: Out = None,
+    jobs: Jobs = None,
+    scheduler: Scheduler = "processes",
+    json: Json = False,
+) -> None:
+    """Judge every claim of the text about the simulated figures, by the paper's test and an honest one."""
+    asked = {"runs": runs, "steps": steps, "seed": seed, "out": out, "scheduler": scheduler}
+    command = shlex.join(["swarm", *sys.argv[1:]])
+    result, lines = judge_claims(figure or [], command, **asked, jobs=cores() if jobs is None else jobs)
+    if json:
+        print_json(result)
+    else:
+        typer.echo("\n".join(lines))

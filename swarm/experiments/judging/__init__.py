@@ -1,0 +1,1 @@
+"""From claims and results to verdicts: one file for each kind of comparison."""

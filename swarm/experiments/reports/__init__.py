@@ -1,0 +1,1 @@
+"""Judged claims as JSON, Markdown and HTML."""
