@@ -24,8 +24,10 @@ MAX_SHIFT_PX = 3.0
 """Farther from the patch's border than the blur explains is the edge of another thing."""
 MIN_PALE = 0.75
 MIN_STEP = 0.03
-PART_OF_BODY = 0.3
-"""Of the skirt's height: how far up to look for the body."""
+BODY_ROWS = 3
+"""How far up to look for the body: farther up, the dark may be what is above the wall."""
+SHARP_ROWS = 10
+"""A patch this high leaves out the row right above it, which the blur darkens above a post too."""
 DARK_PART_OF_WALL = 0.6
 WALL_ROWS = 4
 ROWS_UP_PART = 1 / 24
@@ -56,9 +58,10 @@ class EdgeFinder:
 
     def has_body_above(self, words: Words, blob: Blob, wall_light: float) -> bool:
         """Whether it is dark right above a patch: a skirt has a robot's body above it, and a post the wall."""
-        first = max(0, blob.top - max(2, round(PART_OF_BODY * blob.height)))
+        last = max(blob.top - (1 if blob.height >= SHARP_ROWS else 0), 1)
+        first = max(0, blob.top - BODY_ROWS)
         aside = blob.width // 4
-        strip = words[first : max(blob.top, first + 1), blob.left + aside : blob.right - aside]
+        strip = words[first:last, blob.left + aside : blob.right - aside]
         return float(self._light[strip].mean(axis=1).min()) < DARK_PART_OF_WALL * wall_light
 
     def find(self, words: Words, blob: Blob) -> Edges:
