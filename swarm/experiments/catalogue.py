@@ -6,9 +6,10 @@ import importlib
 import importlib.util
 import pkgutil
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from swarm.errors import UserError, nearest
 from swarm.experiments import paper
@@ -35,7 +36,7 @@ def chosen_names(asked: Sequence[str]) -> list[str]:
 
 def load_figure(name: str) -> Figure:
     """The study or drawing that the file of this figure describes."""
-    figure = _module(name).figure()
+    figure = _called(name, _module(name).figure)
     if not isinstance(figure, Study | Drawing):
         raise UserError(f"{name}: its figure() returns no Study and no Drawing")
     return figure
@@ -43,8 +44,9 @@ def load_figure(name: str) -> Figure:
 
 def load_claims(names: Iterable[str]) -> list[Claim]:
     """What the paper says about these figures, in its order."""
-    modules = [_module(name) for name in names]
-    return [claim for module in modules if hasattr(module, "claims") for claim in module.claims()]
+    modules = {name: _module(name) for name in names}
+    found = (_called(name, module.claims) for name, module in modules.items() if hasattr(module, "claims"))
+    return [claim for claims in found for claim in claims]
 
 
 def _meant(word: str) -> list[str]:
@@ -74,6 +76,16 @@ def _module(name: str) -> ModuleType:
     return importlib.import_module(f"{paper.__name__}.figure_{int(name[3:]):02}")
 
 
+def _called(name: str, call: Callable[[], Any]) -> Any:
+    """What a study file does; an error in it becomes one line."""
+    try:
+        return call()
+    except UserError:
+        raise
+    except Exception as error:
+        raise UserError(f"{name}: {type(error).__name__}: {' '.join(str(error).split())}") from error
+
+
 def _user_module(path: Path) -> ModuleType:
     if not path.is_file():
         raise UserError(f"{path}: no such study file")
@@ -81,12 +93,8 @@ def _user_module(path: Path) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    try:
-        spec.loader.exec_module(module)
-    except UserError:
-        raise
-    except Exception as error:
-        raise UserError(f"{path}: {type(error).__name__}: {' '.join(str(error).split())}") from error
+    loader = spec.loader
+    _called(str(path), lambda: loader.exec_module(module))
     if not callable(getattr(module, "figure", None)):
         raise UserError(f"{path}: a study file has a function figure() that returns a Study")
     return module

@@ -6,12 +6,12 @@ import importlib.util
 import multiprocessing
 import signal
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from swarm.errors import UserError
+from swarm.errors import RunFailedError, UserError
 
 SCHEDULERS = ("processes", "dask")
 
@@ -33,8 +33,14 @@ def workers(scheduler: str, jobs: int) -> Iterator[Workers]:
         if jobs == 1:
             yield Workers(1, _in_this_process)
             return
-        with _processes(jobs) as pool:
-            yield Workers(jobs, _through(pool))
+        try:
+            with _processes(jobs) as pool:
+                yield Workers(jobs, _through(pool))
+        except BrokenExecutor as error:
+            raise RunFailedError(
+                "a worker process died (out of memory?); what was finished is kept: start again, "
+                "perhaps with fewer --jobs"
+            ) from error
     elif scheduler == "dask" or "://" in scheduler:
         with _dask(scheduler, jobs) as dask_workers:
             yield dask_workers

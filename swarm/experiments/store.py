@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from swarm.errors import UserError
+from swarm.errors import RunFailedError, UserError
 from swarm.experiments.plain import plain
 from swarm.gridworld.condition import Condition
 
@@ -91,7 +91,8 @@ class RunStore:
 
     def add_timing(self, timing: Timing) -> None:
         with (self.root / "timings.jsonl").open("a") as file:
-            file.write(json.dumps(vars(timing)) + "\n")
+            # The line starts with its separator, so that one cut short spoils no other.
+            file.write("\n" + json.dumps(vars(timing)))
 
     def timings(self) -> dict[tuple[str, int], Timing]:
         """The last timing of each (condition, run); a line that an interruption cut short is passed over."""
@@ -121,6 +122,8 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
         with temporary.open("rb") as file:
             os.fsync(file.fileno())
         temporary.replace(path)
+    except OSError as error:
+        raise RunFailedError(f"{path} cannot be written ({error}); what was finished is kept") from error
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -138,7 +141,7 @@ def _settle(folder: Path, settings: dict[str, Any], cure: str) -> None:
             )
         else:
             write_whole(path, lambda temporary: temporary.write_text(json.dumps(settings, indent=1) + "\n"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RunFailedError) as error:
         raise UserError(f"{folder} cannot be used for results: {error}; {cure}") from error
 
 

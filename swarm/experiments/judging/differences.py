@@ -43,7 +43,7 @@ def _ruling(check: Better, found: Comparison, claimed: Window, last_step: float,
         return verdict, "the paper's test finds it, the honest test does not confirm it"
     missed = _missed(check, found.paper)
     if missed:
-        return Verdict.IN_PART, f"better, but {missed}"
+        return (Verdict.IN_PART if enough_runs else Verdict.UNDECIDED), f"better, but {missed}"
     if check.end_step is None and _longer(found.honest.against) > _longer(found.honest.windows):
         return Verdict.IN_PART, "better at first, worse for longer"
     return Verdict.HOLDS, "found by the paper's test, confirmed by the honest one"

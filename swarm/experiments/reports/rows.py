@@ -10,9 +10,9 @@ from swarm.experiments.judging.wording import in_windows
 COLUMNS = ("compared", "paper's test", "honest test", "effect (95 % interval)", "verdict")
 
 LEGEND = (
-    "Paper's test: a paired t-test at each of about 200 points, each on its own. Honest test: max-T sign flips "
-    "of the paired differences, which hold 5 % over all points together. Both show where the claim is "
-    "supported and, after the word against, where its opposite is; gaps of up to 5 points are overlooked, and "
+    "Paper's test: a paired t-test at each of about 200 points, each on its own. Honest test: max-T sign "
+    "flips of the paired differences, which hold 5 % over all points. Both show where the claim is "
+    "supported and, after 'against', where its opposite is; gaps of up to 5 points are overlooked, and "
     "stretches of fewer than 3 points left out. Effect: the mean paired difference over the claimed time, in "
     "moves of the best path unless said otherwise, and Cohen's d_z. A best path that does not arrive counts "
     "as ten times the arena's side. Two learners that copy each other are one replicate: their average."
