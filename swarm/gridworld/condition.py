@@ -94,19 +94,26 @@ class Condition:
     """How many points the figure needs; None for all of `steps`."""
 
     def __post_init__(self) -> None:
+        wrong = self._wrong()
+        if wrong:
+            raise ValueError(f"{self.name}: {wrong}")
+
+    def _wrong(self) -> str | None:
+        """What makes the condition impossible, if anything does."""
         if self.steps is None and (self.goal_reachings is None or self.points is None):
-            raise ValueError(f"{self.name}: give steps, or goal_reachings and the points to evaluate")
-        counts = (self.steps, self.goal_reachings, self.evaluate_every, self.points, self.capacity)
+            return "give steps, or goal_reachings and the points to evaluate"
+        counts = [self.steps, self.goal_reachings, self.evaluate_every, self.points, self.capacity]
+        counts += [getattr(self.teacher, field, None) for field in ("moves", "every", "goal_reachings")]
         if any(count is not None and count < 1 for count in counts):
-            raise ValueError(
-                f"{self.name}: steps, goal_reachings, evaluate_every, points and capacity start at 1"
-            )
+            return "steps, points, capacity and all other counts start at 1"
         if not (0.0 <= self.epsilon <= 1.0 and 0.0 <= self.beta <= 1.0):
-            raise ValueError(f"{self.name}: epsilon and beta are probabilities, between 0 and 1")
+            return "epsilon and beta are probabilities, between 0 and 1"
         if isinstance(self.teacher, GivenPaths) and len(self.teacher.paths) > self.capacity:
-            raise ValueError(
-                f"{self.name}: {len(self.teacher.paths)} paths do not fit a memory of {self.capacity}"
-            )
+            return f"{len(self.teacher.paths)} paths do not fit a memory of {self.capacity}"
+        path = len(self.arena.expert_path)
+        if isinstance(self.teacher, Expert) and self.teacher.moves > path:
+            return f"the expert's path has {path} moves, fewer than the {self.teacher.moves} to copy"
+        return None
 
     @property
     def point_limit(self) -> int:
