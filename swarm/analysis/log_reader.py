@@ -9,7 +9,7 @@ import stat
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
-from io import BytesIO
+from io import BufferedReader, BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -23,6 +23,7 @@ from swarm.analysis.log_framing import FramingError, Record, records, summary_re
 from swarm.analysis.log_parts import LogChannel, Part, PendingPart, Wanted, everything
 from swarm.errors import UserError
 
+MAX_EPOCH = 2**63 - 1
 _BROKEN = (McapError, DamagedChunkError, ValueError, struct.error)
 _READ: dict[int, Any] = {
     Opcode.SCHEMA: Schema.read,
@@ -161,8 +162,8 @@ class LogReader:
     def _channel(self, record: Channel) -> LogChannel:
         epoch = record.metadata.get("epoch", "")
         schema = self._schemas.get(record.schema_id, "")
-        number = int(epoch) if epoch.isascii() and epoch.isdecimal() and len(epoch) <= 20 else 0
-        return LogChannel(record.id, record.topic, number, schema, record.message_encoding)
+        number = int(epoch) if epoch.isascii() and epoch.isdecimal() and len(epoch) < 20 else 0
+        return LogChannel(record.id, record.topic, min(number, MAX_EPOCH), schema, record.message_encoding)
 
     def _know_indexed_channels(self, file: BinaryIO) -> None:
         """The index repeats every channel: a damaged first chunk then costs no other."""
@@ -178,7 +179,7 @@ class LogReader:
         self.damage.append(Damage(offset_bytes, self.messages, str(reason)))
 
 
-def open_log(path: Path) -> BinaryIO:
+def open_log(path: Path) -> BufferedReader:
     """Open a regular file for reading; LogError for anything else, without waiting for a pipe."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -188,7 +189,7 @@ def open_log(path: Path) -> BinaryIO:
     if not stat.S_ISREG(state.st_mode) or state.st_size == 0:
         os.close(descriptor)
         raise LogError(path, f"is not an MCAP log: {_kind(state.st_mode)}")
-    return os.fdopen(descriptor, "rb")
+    return open(descriptor, "rb")
 
 
 def _kind(mode: int) -> str:

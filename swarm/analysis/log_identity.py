@@ -1,0 +1,80 @@
+"""Which trial of which run a log holds, by its own metadata."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from swarm.analysis.log_reader import LogError, LogReader, open_log
+from swarm.experiment import Role
+
+UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class LogIdentity:
+    """A log's place among conditions x trials x seeds."""
+
+    path: Path
+    digest: str
+    """SHA-256 of the file."""
+    run: str
+    seed: int
+    trial: int
+    moves: int
+    """How many each learner was to make."""
+    commit: str
+    """Of the program that recorded it."""
+    conditions: Mapping[str, str]
+    """Of each robot."""
+    learners: frozenset[str]
+
+    def condition(self, robot: str) -> str:
+        """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""
+        return self.conditions.get(robot, "" if robot in ("tracker", "server", "run") else UNKNOWN)
+
+    @property
+    def replicate(self) -> tuple[int, int]:
+        """(seed, trial): two conditions measured in the same one form a pair."""
+        return self.seed, self.trial
+
+
+def identify(path: Path) -> LogIdentity:
+    """Read a log's metadata; LogError if it is no log of a run."""
+    metadata = LogReader(path).read_metadata()
+    run, robots = metadata.get("run", {}), metadata.get("robots", {})
+    try:
+        words = {robot: _role_and_condition(text) for robot, text in robots.items()}
+        return LogIdentity(
+            path=path,
+            digest=_digest(path),
+            run=run["name"],
+            seed=_count(run["seed"]),
+            trial=_count(run["trial"]),
+            moves=_count(run["moves"]),
+            commit=metadata.get("versions", {}).get("commit", UNKNOWN),
+            conditions={robot: condition for robot, (_, condition) in words.items()},
+            learners=frozenset(robot for robot, (role, _) in words.items() if role == Role.LEARNER.value),
+        )
+    except (KeyError, ValueError) as error:
+        reason = "does not say which run and trial it holds: was it recorded by swarm-server?"
+        raise LogError(path, reason) from error
+
+
+def _role_and_condition(text: str) -> tuple[str, str]:
+    role, condition = text.split(" ")
+    return role, condition
+
+
+def _count(text: str) -> int:
+    value = int(text)
+    if not 0 <= value < 2**63:
+        raise ValueError(f"{text} is out of range")
+    return value
+
+
+def _digest(path: Path) -> str:
+    with open_log(path) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
