@@ -88,16 +88,29 @@ def test_confidence_falls_with_noise() -> None:
     assert near > far > 0
 
 
+def watched_until_back(seed: int, conditions: Conditions) -> Demonstration:
+    """The expert's track of eight moves, its drive back, and three moves of the next track."""
+    rng = np.random.default_rng(seed)
+    route = track(rng, 0, [Move.SE] * 8, conditions)
+    route += drive_back(rng, route, conditions)
+    route += track(rng, 0, [Move.SE] * 3, conditions)[1:]
+    return Demonstration((Move.SE,) * 8, *watch(rng, route, conditions))
+
+
 @BOTH
 def test_the_drive_back_is_not_copied(profile: CopyProfile) -> None:
-    """Expert tracks of eight moves, watched until the robot is back: 100 seconds, nothing of it NW."""
-    for seed in range(10):
-        rng = np.random.default_rng(seed)
-        route = track(rng, 0, [Move.SE] * 8, CLEAR)
-        route += drive_back(rng, route, CLEAR)
-        route += track(rng, 0, [Move.SE] * 3, CLEAR)[1:]
-        positions, frames = watch(rng, route, CLEAR)
-        assert copied(Demonstration((), positions, frames), profile).path().moves == (Move.SE,) * 8
+    for seed in range(8):
+        shown = watched_until_back(seed, CLEAR)
+        assert copied(shown, profile).path().moves == shown.moves
+
+
+def test_the_drive_back_is_not_copied_from_noisy_sightings() -> None:
+    start_m = COMPARTMENT.centre(COMPARTMENT.grid.start)
+    for seed in range(15):
+        shown = watched_until_back(seed, Conditions())
+        result = copy_moves(shown.positions, CopyProfile.BEST, CELL_M, shown.expected_frames, start_m)
+        assert isinstance(result, Copy)
+        assert result.path().moves == shown.moves
 
 
 def test_moves_cut_by_the_beginning_and_the_end_are_not_copied() -> None:

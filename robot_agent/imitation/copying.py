@@ -9,11 +9,12 @@ from typing import TypeVar
 
 import numpy as np
 
+from robot_agent.imitation.drive_back import Place, demonstration_rests
 from robot_agent.imitation.line_fitting import fit_segments, snap
 from robot_agent.imitation.moves import read_moves
 from robot_agent.imitation.observation import ObservedPosition
 from robot_agent.imitation.outliers import inliers
-from robot_agent.imitation.rests import Rest, demonstration_rests, find_rests
+from robot_agent.imitation.rests import Rest, find_rests
 from robot_agent.imitation.segments import Segment, find_vertices, segments_between
 from robot_agent.imitation.sightings import Sightings, plausible_sightings
 from robot_agent.imitation.smoothing import Smoothed, smooth
@@ -69,13 +70,18 @@ class NoCopy:
 
 
 def copy_moves(
-    positions: Sequence[ObservedPosition], profile: CopyProfile, cell_m: float, expected_frames: int
+    positions: Sequence[ObservedPosition],
+    profile: CopyProfile,
+    cell_m: float,
+    expected_frames: int,
+    start_m: Place | None = None,
 ) -> Copy | NoCopy:
     """The moves of the demonstration within an observation, or why there are none.
 
     `positions` are those frames in which the demonstrator was seen, out of `expected_frames`; a position
     that its neighbours contradict counts as a lost frame. The drive back to the start is left out, and so is
-    a move that the observation's beginning or end cuts.
+    a move that the observation's beginning or end cuts. `start_m` is the middle of the start cell, where the
+    drive back ends: if it is known, the drive is told from a fast demonstration more surely.
     """
     if len(positions) > MOST_POSITIONS:
         return NoCopy(
@@ -87,7 +93,7 @@ def copy_moves(
         return NoCopy(lost)
     smoothed = smooth(sightings)
     rests = find_rests(smoothed, cell_m)
-    shown = demonstration_rests(smoothed, rests, cell_m)
+    shown = demonstration_rests(smoothed, rests, cell_m, start_m)
     if len(shown) < 2:
         return NoCopy(_no_demonstration(rests))
     copied = _copy(sightings, smoothed, shown, profile, cell_m)
