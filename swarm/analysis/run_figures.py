@@ -1,0 +1,75 @@
+"""The learning curves in the form of the paper's figure 25, for any run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, StrMethodFormatter
+
+from swarm.analysis.curves import Curves
+from swarm.analysis.run_curves import RunCurves, interval
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+"""Told apart by colour-blind readers too (Okabe and Ito)."""
+GREY = "#595959"
+DRAWN_POINTS = 1500
+TRIALS_SHOWN = 8
+"""Up to so many trials are drawn one by one, thinly, behind their mean."""
+
+
+def plot_curves(found: RunCurves, title: str) -> Figure:
+    """Mean best path length of each condition against moves, with its 95 % interval as a band."""
+    figure = Figure(figsize=(8.0, 4.8), layout="constrained")
+    axes = figure.add_subplot()
+    for place, curves in enumerate(found.curves.values()):
+        _draw(axes, curves, COLOURS[place % len(COLOURS)])
+    _label(axes, found)
+    axes.set_title(title, loc="left", fontsize=13, fontweight="bold", pad=26)
+    axes.text(0, 1.03, _subtitle(found), transform=axes.transAxes, fontsize=9, color=GREY)
+    return figure
+
+
+def save_png(figure: Figure, path: Path) -> None:
+    """Without the date and the version: the same logs give the same bytes."""
+    figure.savefig(path, format="png", dpi=150, metadata={"Software": None})
+
+
+def _draw(axes: Axes, curves: Curves, colour: str) -> None:
+    drawn = curves.every(max(1, len(curves.times) // DRAWN_POINTS))
+    band = interval(drawn)
+    if band is not None:
+        axes.fill_between(drawn.times, band.low, band.high, color=colour, alpha=0.18, linewidth=0)
+    if 1 < len(drawn.values) <= TRIALS_SHOWN:
+        axes.plot(drawn.times, drawn.values.T, color=colour, alpha=0.22, linewidth=0.6)
+    trials = len(drawn.values)
+    label = f"{curves.name}  ({trials} {'trial' if trials == 1 else 'trials'})"
+    axes.plot(drawn.times, drawn.values.mean(axis=0), color=colour, linewidth=1.8, label=label)
+
+
+def _label(axes: Axes, found: RunCurves) -> None:
+    axes.set_xlabel("moves made by the learner", fontsize=10)
+    axes.set_ylabel("best path length (moves)", fontsize=10)
+    axes.set_xlim(0, max(float(curves.times[-1]) for curves in found.curves.values()))
+    axes.set_ylim(0, max(float(curves.values.max()) for curves in found.curves.values()) * 1.04)
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.grid(axis="y", color="#e4e4e4", linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.tick_params(labelsize=9, color=GREY)
+    axes.legend(frameon=False, fontsize=10, loc="upper right")
+
+
+def _subtitle(found: RunCurves) -> str:
+    return f"{interval_note(found)} A path that does not arrive counts as {found.cap} (the cap)."
+
+
+def interval_note(found: RunCurves) -> str:
+    """What the lines and bands of the picture are."""
+    trials = {len(curves.values) for curves in found.curves.values()}
+    if trials == {1}:
+        return "One trial of each condition: no interval can be given."
+    exception = " Where there is one trial only, no interval." if 1 in trials else ""
+    return f"Mean over trials with its 95 % interval (Student's t).{exception}"
