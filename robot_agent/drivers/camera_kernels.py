@@ -102,6 +102,7 @@ def paint_floor(
 @compiled
 def paint_room(
     fine: Array,
+    walls_m: Array,
     camera: Array,
     raster: Array,
     rooms: Array,
@@ -112,10 +113,11 @@ def paint_room(
     stains: Array,
     panorama: Array,
 ) -> None:
-    """Everything that does not move: background, floor and walls."""
+    """Everything that does not move; `walls_m` gets the depth of the wall in each column."""
     for column in range(fine.shape[1]):
         right = raster[0] + (column + 0.5) * raster[1]
         depth, north_south = wall_ahead(camera, right, rooms)
+        walls_m[column] = depth
         top = (raster[2] - (wall_height_m - camera[4]) / depth) / raster[3]
         base = (raster[2] + camera[4] / depth) / raster[3]
         paint_background(
@@ -134,7 +136,13 @@ def paint_room(
 
 @compiled
 def paint_shadow(
-    fine: Array, camera: Array, raster: Array, ahead_m: float, right_m: float, radius_m: float
+    fine: Array,
+    walls_m: Array,
+    camera: Array,
+    raster: Array,
+    ahead_m: float,
+    right_m: float,
+    radius_m: float,
 ) -> None:
     """The dark rim on the floor around a cylinder's foot."""
     reach = radius_m + 0.03
@@ -149,6 +157,8 @@ def paint_shadow(
         right = raster[0] + (column + 0.5) * raster[1]
         for row in range(max(int(top) + 1, 0), min(int(bottom) + 1, fine.shape[2])):
             depth = camera[4] / max((row + 0.5) * raster[3] - raster[2], 1e-3)
+            if depth > walls_m[column]:
+                continue
             away = math.hypot(depth - ahead_m, right * depth - right_m) - radius_m
             light = 1 - 0.6 * math.exp(-max(away, 0.0) / 0.009)
             for channel in range(3):
@@ -156,7 +166,7 @@ def paint_shadow(
 
 
 @compiled
-def paint_band(fine: Array, camera: Array, raster: Array, band: Array, lamp: Array) -> None:
+def paint_band(fine: Array, walls_m: Array, camera: Array, raster: Array, band: Array, lamp: Array) -> None:
     """A coloured cylinder; its side edges are ramps as long as it moves during the exposure.
 
     `band` is (ahead_m, right_m, radius_m, bottom_m, top_m, red, green, blue, shine, slope moved); `lamp` is
@@ -180,6 +190,8 @@ def paint_band(fine: Array, camera: Array, raster: Array, band: Array, lamp: Arr
         square = 1 + right**2
         towards = ahead_m + right * right_m
         depth = (towards - math.sqrt(max(towards**2 - square * gap, 0.0))) / square
+        if depth > walls_m[column]:
+            continue
         normal_ahead, normal_right = (depth - ahead_m) / radius_m, (right * depth - right_m) / radius_m
         shade = 0.74 + 0.26 * max(normal_ahead * lamp[0] + normal_right * lamp[1], 0.0)
         half_ahead, half_right = lamp[0] - 1 / math.sqrt(square), lamp[1] - right / math.sqrt(square)
@@ -193,13 +205,13 @@ def paint_band(fine: Array, camera: Array, raster: Array, band: Array, lamp: Arr
 
 
 @compiled
-def paint_bands(fine: Array, camera: Array, raster: Array, bands: Array, lamp: Array) -> None:
-    """All the cylinders, the farthest first, each over the shadows of all."""
+def paint_bands(fine: Array, walls_m: Array, camera: Array, raster: Array, bands: Array, lamp: Array) -> None:
+    """All the cylinders that no wall hides, the farthest first, over the shadows of all."""
     for number in range(bands.shape[0]):
         if bands[number, 3] == 0.0:
-            paint_shadow(fine, camera, raster, bands[number, 0], bands[number, 1], bands[number, 2])
+            paint_shadow(fine, walls_m, camera, raster, bands[number, 0], bands[number, 1], bands[number, 2])
     for number in range(bands.shape[0]):
-        paint_band(fine, camera, raster, bands[number], lamp)
+        paint_band(fine, walls_m, camera, raster, bands[number], lamp)
 
 
 @compiled

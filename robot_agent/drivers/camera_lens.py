@@ -28,6 +28,7 @@ class Lens:
         rows = math.ceil((top - up.min()) / row_slope) + MARGIN_PX
         self.raster = np.array([left, column_slope, top, row_slope])
         self.fine = np.zeros((3, columns, rows), dtype=np.float32)
+        self.walls_m = np.zeros(columns)
         self.blurred = np.zeros_like(self.fine)
         self.map_x = ((right - left) / column_slope - 0.5).astype(np.float32)
         self.map_y = ((top - up) / row_slope - 0.5).astype(np.float32)

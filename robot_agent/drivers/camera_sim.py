@@ -84,6 +84,7 @@ class SimulatedCamera:
         look = self._surfaces
         self._kernels.paint_room(
             self._lens.fine,
+            self._lens.walls_m,
             self._view(camera),
             self._lens.raster,
             rooms,
@@ -99,8 +100,9 @@ class SimulatedCamera:
         table = np.array([_band_row(band, camera, self.conditions.exposure_s) for band in bands])
         lamp_rad = LAMP_THETA_RAD - camera.theta_rad
         lamp = np.array([math.cos(lamp_rad), -math.sin(lamp_rad)])
+        lens = self._lens
         self._kernels.paint_bands(
-            self._lens.fine, self._view(camera), self._lens.raster, table.reshape(-1, 10), lamp
+            lens.fine, lens.walls_m, self._view(camera), lens.raster, table.reshape(-1, 10), lamp
         )
 
     def _view(self, camera: Pose) -> NDArray[np.float64]:

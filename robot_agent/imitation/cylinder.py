@@ -34,7 +34,7 @@ def half_angle_rad(range_m: float, radius_m: float = SKIRT_RADIUS_M) -> float:
 def covariance(range_m: float, edge_sd_rad: float, mounting_sd_rad: float) -> Covariance:
     """Of (range, bearing) when both edges are seen, each with its own independent error.
 
-    From d = R / sin(half): the range's standard deviation is d^2 times a constant, `edge_sd_rad` / (R sqrt 2).
+    From d = R / sin(half): the range's standard deviation is d^2 `edge_sd_rad` / (R sqrt 2).
     `mounting_sd_rad` is what the camera's place on the robot adds to the bearing.
     """
     range_sd_m = edge_sd_rad / math.sqrt(2) * range_m**2 / SKIRT_RADIUS_M
@@ -44,7 +44,7 @@ def covariance(range_m: float, edge_sd_rad: float, mounting_sd_rad: float) -> Co
 def covariance_of_one_edge(
     range_m: float, range_sd_m: float, edge_sd_rad: float, mounting_sd_rad: float, side: int
 ) -> Covariance:
-    """Of (range, bearing) when one edge (`side` 1: left, -1: right) is seen, and the range comes from the height.
+    """Of (range, bearing) when one edge (`side` 1: left, -1: right) is seen and the height gives the range.
 
     The bearing is the edge's less `side` times asin(R / d): a robot thought too far is also thought too
     close to that edge.

@@ -1,8 +1,8 @@
 """The side edges of a skirt to a fraction of a pixel, in light rather than in the sensor's levels.
 
-The rows around the horizon, where the white wall is behind the skirt, are averaged into one profile across the
-image. An edge is where a sharp step between the plateaus on its two sides would hold as much light as
-the profile does: that place does not depend on how blurred the edge is.
+The rows around the horizon, where the white wall is behind the skirt, are averaged into one profile
+across the image. An edge is where a sharp step between the plateaus on its two sides would hold as much
+light as the profile does: that place does not depend on how blurred the edge is.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ ROWS_DOWN_PART = 1 / 64
 
 @dataclass(frozen=True)
 class Edges:
-    """Columns (fractions, pixel middles whole) of the two sides; None where a side is not against the wall."""
+    """Columns (fractions; pixel middles whole) of the two sides; None for a side that is not against wall."""
 
     left: float | None
     right: float | None
@@ -57,7 +57,7 @@ class EdgeFinder:
         return float(np.partition(light, -light.size // 4)[-light.size // 4])
 
     def has_body_above(self, words: Words, blob: Blob, wall_light: float) -> bool:
-        """Whether it is dark right above a patch: a skirt has a robot's body above it, and a post the wall."""
+        """Whether it is dark right above a patch: a skirt has a robot's body above it, a post the wall."""
         last = max(blob.top - (1 if blob.height >= SHARP_ROWS else 0), 1)
         first = max(0, blob.top - BODY_ROWS)
         aside = blob.width // 4
@@ -102,7 +102,7 @@ class EdgeFinder:
 
 
 def _step(profile: NDArray[np.float32], first: int, offset: int) -> float | None:
-    """Where the profile steps down after its `first` samples (all outside); `offset` is the first's column."""
+    """Where the profile steps down after its `first` samples, all outside; `offset` is their first column."""
     last = min(first + 2 * REACH_PX, profile.size - 1)
     outer, inner = float(profile[:first].mean()), float(profile[last:].mean())
     if outer - inner < MIN_STEP:

@@ -112,8 +112,8 @@ PROFILES = {
 class Seer:
     """Looks for one skirt in the frames of one camera, one frame after the other.
 
-    `profile` is "best" (320 x 240, edges to a fraction of a pixel) or "paper" (160 x 120, size of the patch in
-    whole pixels). The camera's model is taken at the profile's resolution.
+    `profile` is "best" (320 x 240, edges to a fraction of a pixel) or "paper" (160 x 120, size of the patch
+    in whole pixels). The camera's model is taken at the profile's resolution.
     """
 
     def __init__(self, profile: str, model: CameraModel, table: ColourTable) -> None:
@@ -135,8 +135,8 @@ class Seer:
         """What the frame shows of the demonstrator.
 
         `turned_rad`: how far the camera turned (counter-clockwise) since the frame before, which narrows
-        down where the demonstrator can be; None if that is not known. UserError if the frame's size is not the
-        profile's.
+        down where the demonstrator can be; None if that is not known. UserError if the frame's size is not
+        the profile's.
         """
         self._check_size(frame)
         self._gate.turn(turned_rad)

@@ -27,7 +27,7 @@ def fits_skirt(
 
 
 def fits_part_of_skirt(blob: Blob, model: CameraModel, tolerance_px: float) -> bool:
-    """Whether a patch of which one side is not to be seen can be a third or more of a skirt, by its height."""
+    """Whether a patch with one side out of sight can be a third or more of a skirt, by its height."""
     depth_m = depth_from_height_m(blob, model)
     full_px = 2 * model.focal_px * SKIRT_RADIUS_M / (depth_m + SKIRT_RADIUS_M)
     enough = SMALLEST_PART * full_px < blob.width < (1 + TOLERANCE) * full_px + tolerance_px

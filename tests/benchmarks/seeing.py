@@ -81,7 +81,7 @@ def look_at(
 def scattered(
     profile: str, condition: str, skirt: str, frames: int, seed: int, pixel_format: str = "rgb565"
 ) -> Iterator[Look]:
-    """Single frames: the demonstrator anywhere at 40 to 150 cm, at rest or moving, with other robots and posts."""
+    """Single frames: the demonstrator at 40 to 150 cm, at rest or moving, with another robot and a post."""
     for first in range(0, frames, FRAMES_OF_A_CAMERA):
         camera, seer = make_pair(profile, condition, skirt, seed + first, pixel_format)
         rng = np.random.default_rng([seed, first])
@@ -122,7 +122,7 @@ def _apart(model: CameraModel, own: Pose, body: Pose, others: tuple[Pose, ...]) 
 
 
 def driving(profile: str, condition: str, skirt: str, frames: int, seed: int, twins: int) -> Iterator[Look]:
-    """Drives at 10 cm/s and 5 frames a second, the observer turning after it, among posts of the skirt's colour."""
+    """Drives at 10 cm/s and 5 frames a second among posts of the skirt's colour, the observer turning."""
     number = 0
     while number < frames:
         camera, seer = make_pair(profile, condition, skirt, seed + number)
@@ -172,7 +172,8 @@ def accuracy(looks: list[Look], model: CameraModel) -> dict[str, float]:
     gross = np.abs(widths) > 3
     px_m = ranges**2 / (2 * model.focal_px * SKIRT_RADIUS_M)
     return {
-        "answered": len(pairs) / len(looks),
+        "answered": sum(isinstance(look.said, Sighting) for look in looks) / len(looks),
+        "answered_by_both_edges": len(pairs) / len(looks),
         "gross_errors": float(gross.mean()),
         "width_sd_px": float(widths.std()),
         "width_bias_px": float(widths.mean()),
