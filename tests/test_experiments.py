@@ -55,8 +55,7 @@ def test_all_figures_once_and_in_order() -> None:
 )
 def test_an_unknown_figure_names_the_nearest(word: str, hint: str) -> None:
     with pytest.raises(UserError, match=hint):
-        for name in chosen_names([word]):
-            load_figure(name)
+        [load_figure(name) for name in chosen_names([word])]
 
 
 def test_each_file_describes_the_figure_of_its_number() -> None:
@@ -150,7 +149,7 @@ def test_a_file_that_is_spoilt_inside_stops_with_the_cure(tmp_path: Path) -> Non
     store = open_store(tmp_path, seed=1, steps=None)
     store.admit(SHORT)
     (tmp_path / "runs" / "short" / "00000.parquet").write_bytes(b"PAR1 nonsense PAR1")
-    with pytest.raises(RunFailedError, match="run 0 of short .* delete its file and start again"):
+    with pytest.raises(RunFailedError, match=r"run 0 of short .* delete its file and start again"):
         Results(store, 1).curves(SHORT, 30)
 
 
