@@ -70,7 +70,9 @@ class Conductor:
         if t_ns - self._moved_ns > STUCK_AFTER_NS:
             behind = [robot for robot, moves in self.moves.items() if moves < self._experiment.run.moves]
             minutes = STUCK_AFTER_NS // NS_PER_S // 60
-            raise RunFailedError(f"no robot has moved for {minutes} min of the run; waiting: {', '.join(behind)}")
+            raise RunFailedError(
+                f"no robot has moved for {minutes} min of the run; waiting: {', '.join(behind)}"
+            )
 
     def announce(self, phase: pb.RunState.Phase.ValueType) -> None:
         """Tell everyone the phase of the trial."""

@@ -105,8 +105,7 @@ class LockstepHub:
             done = parse_done(payload)
             if done and done.number == self.number and done.process in waiting:
                 items.extend(done.items)
-                if not done.more:
-                    waiting.discard(done.process)
+                waiting.discard(done.process)
         return self._batch(items)
 
     def unsent(self) -> Batch:

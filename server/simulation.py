@@ -66,7 +66,7 @@ class Simulation:
         pace = Pace(self.speed is None, self.speed or 1.0, time.monotonic_ns())
         specs = run_table(self.experiment, file, endpoint, trial, pace)
         with (
-            Bus(BusSettings(endpoint, hub=True, low_latency=pace.lockstep)) as bus,
+            Bus(BusSettings(endpoint, hub=True)) as bus,
             Supervisor(specs, self.directory.output(trial)) as supervisor,
         ):
             claim(bus, Presence("server", "server", socket.gethostname(), time.time_ns()))

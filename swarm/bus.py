@@ -27,8 +27,6 @@ class BusSettings:
     """How a process reaches the others.
 
     The hub listens on `endpoint` (tcp/HOST:PORT) and routes; clients connect to it and keep trying.
-    `low_latency` has the sender's own thread write to the socket: less waiting, but no priorities and no
-    payload above 48 kB (lost without an error), so it is for the lockstep's frames alone.
     `config` is a Zenoh configuration file (JSON5) whose values come first, for TLS and access control.
     """
 
@@ -36,7 +34,6 @@ class BusSettings:
     hub: bool = False
     lease_s: float = 1.5
     wait_for_hub: bool = True
-    low_latency: bool = False
     config: Path | None = None
 
 
@@ -195,8 +192,6 @@ def _config(settings: BusSettings) -> zenoh.Config:
         "transport/shared_memory/enabled": False,
         "timestamping/enabled": True,
         "transport/link/tx/lease": round(settings.lease_s * 1000),
-        "transport/unicast/qos/enabled": not settings.low_latency,
-        "transport/unicast/lowlatency": settings.low_latency,
     }
     for key, value in values.items():
         config.insert_json5(key, json.dumps(value))

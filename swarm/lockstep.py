@@ -19,7 +19,6 @@ from swarm.messages.header import Header
 
 M = TypeVar("M", bound=Message)
 
-FRAME_BYTES = 32_000
 WAKE_S = 0.25
 WAKES_WITHOUT_HUB = 8
 EPOCH = 1
@@ -41,7 +40,7 @@ class LockstepLink:
         self._routes: dict[str, tuple[Feed[Any], ...]] = {}
         self._sequencer = Sequencer()
         self._items: list[pb.Item] = []
-        self._answer: list[bytes] = []
+        self._answer = b""
         self._number = 0
         self.keys_received: set[str] = set()
         """Every key of which this process received a message."""
@@ -64,7 +63,7 @@ class LockstepLink:
                 self._deliver(item, tick.t_ns)
             yield tick.t_ns
             self._number = tick.number
-            self._answer = self._frames(tick.number)
+            self._answer = self._answer_to(tick.number)
             self._send_answer()
 
     def _next_tick(self) -> pb.Tick:
@@ -105,23 +104,13 @@ class LockstepLink:
         for feed in feeds:
             feed.put(item.key, Header(item.epoch, item.sequence, t_ns), item.payload)
 
-    def _frames(self, number: int) -> list[bytes]:
-        """The tick's items in frames small enough for a low-latency transport."""
-        done, size = pb.Done(process=self._process, number=number), 0
-        frames = []
-        for item in self._items:
-            if size + len(item.payload) > FRAME_BYTES and size:
-                done.more = True
-                frames.append(done.SerializeToString())
-                done, size = pb.Done(process=self._process, number=number), 0
-            done.items.append(item)
-            size += len(item.payload) + len(item.key) + 16
-        self._items = []
-        return [*frames, done.SerializeToString()]
+    def _answer_to(self, number: int) -> bytes:
+        items, self._items = self._items, []
+        return pb.Done(process=self._process, number=number, items=items).SerializeToString()
 
     def _send_answer(self) -> None:
-        for frame in self._answer:
-            self._done.put(frame)
+        if self._answer:
+            self._done.put(self._answer)
 
 
 def key_matches(expression: str, key: str) -> bool:

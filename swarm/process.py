@@ -62,7 +62,7 @@ def load_experiment(arguments: argparse.Namespace) -> Experiment:
 def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s: float) -> Iterator[Link]:
     """The link of a process that is present under its names for as long as the block runs."""
     epoch = EPOCH if arguments.lockstep else time.time_ns()
-    settings = BusSettings(arguments.connect, low_latency=arguments.lockstep, config=arguments.zenoh_config)
+    settings = BusSettings(arguments.connect, config=arguments.zenoh_config)
     with Bus(settings) as bus:
         for name in names:
             claim(bus, Presence(kind, name, socket.gethostname(), epoch))

@@ -577,18 +577,16 @@ Global___Hello: _TypeAlias = Hello  # noqa: Y015
 
 @_typing.final
 class Done(_message.Message):
-    """Simulation: a process has done a tick; `more` frames of the same tick follow."""
+    """Simulation: a process has done a tick, and this is what it published in it."""
 
     DESCRIPTOR: _descriptor.Descriptor
 
     PROCESS_FIELD_NUMBER: _builtins.int
     NUMBER_FIELD_NUMBER: _builtins.int
-    MORE_FIELD_NUMBER: _builtins.int
     ITEMS_FIELD_NUMBER: _builtins.int
     HELLO_FIELD_NUMBER: _builtins.int
     process: _builtins.str
     number: _builtins.int
-    more: _builtins.bool
     @_builtins.property
     def items(self) -> _containers.RepeatedCompositeFieldContainer[Global___Item]: ...
     @_builtins.property
@@ -598,13 +596,12 @@ class Done(_message.Message):
         *,
         process: _builtins.str = ...,
         number: _builtins.int = ...,
-        more: _builtins.bool = ...,
         items: _abc.Iterable[Global___Item] | None = ...,
         hello: Global___Hello | None = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _typing.Literal["hello", b"hello"]  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["hello", b"hello", "items", b"items", "more", b"more", "number", b"number", "process", b"process"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["hello", b"hello", "items", b"items", "number", b"number", "process", b"process"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 
