@@ -82,8 +82,8 @@ def test_engine_equals_the_plain_controller(teacher: Teacher, approach: Approach
     for _ in range(4_000):
         plain.step()
     trace = compiled.trace(compiled.advance())
-    assert_same(compiled.one, plain.one)
-    assert_same(compiled.two, plain.two) if not isinstance(teacher, AccessExpert) else None
+    assert_same(compiled.one.agent, plain.one)
+    assert_same(compiled.two.agent, plain.two) if not isinstance(teacher, AccessExpert) else None
     learners = [plain.one, plain.two][: case.learners]
     assert trace.best_path_length.tolist() == [learner.lengths for learner in learners]
 
@@ -95,7 +95,7 @@ def test_every_decision_is_the_same(teacher: Teacher) -> None:
     for _ in range(400):
         plain.step()
         compiled.advance(steps=1)
-        assert_same(compiled.one, plain.one)
+        assert_same(compiled.one.agent, plain.one)
 
 
 def test_memory_forgets_as_the_plain_one_does() -> None:
@@ -105,8 +105,8 @@ def test_memory_forgets_as_the_plain_one_does() -> None:
         plain.step()
     compiled.advance()
     assert plain.one.arrivals > 4 * case.capacity
-    assert_same(compiled.one, plain.one)
-    assert_same(compiled.two, plain.two)
+    assert_same(compiled.one.agent, plain.one)
+    assert_same(compiled.two.agent, plain.two)
 
 
 def test_engine_equals_the_plain_controller_round_the_obstacle() -> None:
@@ -116,17 +116,17 @@ def test_engine_equals_the_plain_controller_round_the_obstacle() -> None:
     for _ in range(150_000):
         plain.step()
     trace = compiled.trace(compiled.advance())
-    assert_same(compiled.one, plain.one)
+    assert_same(compiled.one.agent, plain.one)
     assert trace.best_path_length.tolist() == [plain.one.lengths]
 
 
 def test_greedy_sets_are_the_tables_maxima() -> None:
     compiled = Simulation(condition(EIGHT), 11, 0)
     compiled.advance()
-    table = compiled.one.q.reshape(-1, 8)
-    assert np.array_equal(compiled.one.best, table.max(axis=1))
+    table = compiled.one.agent.q.reshape(-1, 8)
+    assert np.array_equal(compiled.one.agent.best, table.max(axis=1))
     sets = ((table == table.max(axis=1, keepdims=True)) << np.arange(8)).sum(axis=1)
-    assert np.array_equal(compiled.one.greedy, sets)
+    assert np.array_equal(compiled.one.agent.greedy, sets)
 
 
 def test_evaluation_does_not_disturb_learning() -> None:
@@ -134,7 +134,7 @@ def test_evaluation_does_not_disturb_learning() -> None:
     one, other = Simulation(often, 2, 0), Simulation(seldom, 2, 0)
     one.advance()
     other.advance()
-    assert np.array_equal(one.one.q, other.one.q)
+    assert np.array_equal(one.one.agent.q, other.one.agent.q)
 
 
 def test_same_seed_gives_the_same_trace_on_any_thread() -> None:
@@ -156,7 +156,7 @@ def test_run_ends_with_its_goal_reachings() -> None:
     case = condition(NoTeacher(), steps=None, goal_reachings=25, points=40)
     simulation = Simulation(case, 1, 0)
     trace = simulation.trace(simulation.advance())
-    assert simulation.one.arrivals[0] == 25
+    assert simulation.one.agent.arrivals[0] == 25
     assert trace.best_path_length.shape == (1, min(40, trace.steps // 10))
 
 

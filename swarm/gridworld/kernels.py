@@ -65,6 +65,8 @@ class World(NamedTuple):
     """What each move adds to the number of the cell (moves,)"""
     start: np.uint64
     goal: np.uint64
+    expert_path: NDArray[np.uint8]
+    """(moves of the expert,)"""
 
 
 class Rules(NamedTuple):
@@ -146,6 +148,14 @@ class BestPath(NamedTuple):
     stream: NDArray[np.uint64]
     lengths: NDArray[np.int16]
     """What was found so far (points,)"""
+
+
+class Learner(NamedTuple):
+    """An agent, how it learns, and what was found of its best path."""
+
+    agent: Agent
+    rules: Rules
+    found: BestPath
 
 
 @_inlined
@@ -376,15 +386,17 @@ def _leave_trail(agent: Agent, action: Word, arrived: Truth) -> None:
 
 
 @_called
-def _copy_moves(agent: Agent, other: Agent, rules: Rules, expert_path: NDArray[np.uint8]) -> None:
-    """See a stretch of the teacher's trajectory and remember it.
+def _copy_moves(world: World, one: Learner, two: Learner) -> None:
+    """`one` sees a stretch of its teacher's trajectory and remembers it.
 
     Of another agent these are its last moves, all of one run: the agents' runs are out of step, so
     they come from a random place of its trajectory.
     """
+    agent, other, rules = one.agent, two.agent, one.rules
     if rules.watches == WATCHES_EXPERT:
-        start = np.int64(_integer(len(expert_path) - rules.moves + 1, _bits(agent.watching)))
-        remember(agent, rules, expert_path, start, rules.moves)
+        places = len(world.expert_path) - rules.moves + 1
+        start = np.int64(_integer(places, _bits(agent.watching)))
+        remember(agent, rules, world.expert_path, start, rules.moves)
         return
     ring, moves = other.trail, other.trail_moves[0]
     if moves < rules.moves and other.shown_moves[0] > moves:
@@ -394,12 +406,11 @@ def _copy_moves(agent: Agent, other: Agent, rules: Rules, expert_path: NDArray[n
 
 
 @_inlined
-def _step_and_copy(
-    world: World, agent: Agent, other: Agent, rules: Rules, expert_path: NDArray[np.uint8]
-) -> None:
-    arrived = step(world, agent, other, rules)
-    if arrived and rules.watches != WATCHES_NOBODY and agent.arrivals[0] % rules.every == 0:
-        _copy_moves(agent, other, rules, expert_path)
+def _step_and_copy(world: World, one: Learner, two: Learner) -> None:
+    arrived = step(world, one.agent, two.agent, one.rules)
+    watches = one.rules.watches != WATCHES_NOBODY
+    if arrived and watches and one.agent.arrivals[0] % one.rules.every == 0:
+        _copy_moves(world, one, two)
 
 
 @_called
@@ -428,9 +439,9 @@ def _walk(world: World, agent: Agent, found: BestPath) -> Whole:
 
 
 @_called
-def _evaluate(world: World, agent: Agent, found: BestPath, point: Whole) -> None:
-    if point < len(found.lengths):
-        found.lengths[point] = best_path_length(world, agent, found)
+def _evaluate(world: World, learner: Learner, point: Whole) -> None:
+    if point < len(learner.found.lengths):
+        learner.found.lengths[point] = best_path_length(world, learner.agent, learner.found)
 
 
 @_inlined
@@ -453,35 +464,26 @@ def _practise(world: World, agent: Agent, rules: Rules, steps: Whole, reachings:
 
 
 @_called
-def run(
-    world: World,
-    one: Agent,
-    two: Agent,
-    rules: Rules,
-    two_rules: Rules,
-    found: BestPath,
-    two_found: BestPath,
-    expert_path: NDArray[np.uint8],
-    limits: Limits,
-) -> Whole:
+def run(world: World, one: Learner, two: Learner, limits: Limits) -> Whole:
     """Let `one`, and in turn `two` if it takes part, act until a limit; return the steps taken.
 
     The best paths are looked for every `limits.every` steps while there is room for them.
     """
-    alone = not limits.pair and rules.watches == WATCHES_NOBODY and one.remembered[0] == 0
+    agent, rules, points = one.agent, one.rules, len(one.found.lengths)
+    alone = not limits.pair and rules.watches == WATCHES_NOBODY and agent.remembered[0] == 0
     point, due = 0, limits.every
     taken: Whole = 0
-    while taken < limits.steps and one.arrivals[0] < limits.reachings:
+    while taken < limits.steps and agent.arrivals[0] < limits.reachings:
         if alone:
-            taken += _practise(world, one, rules, min(due, limits.steps) - taken, limits.reachings)
+            taken += _practise(world, agent, rules, min(due, limits.steps) - taken, limits.reachings)
         else:
-            _step_and_copy(world, one, two, rules, expert_path)
+            _step_and_copy(world, one, two)
             if limits.pair:
-                _step_and_copy(world, two, one, two_rules, expert_path)
+                _step_and_copy(world, two, one)
             taken += 1
         if taken == due:
-            _evaluate(world, one, found, point)
-            _evaluate(world, two, two_found, point)
+            _evaluate(world, one, point)
+            _evaluate(world, two, point)
             point += 1
-            due = due + limits.every if point < len(found.lengths) else limits.steps + 1
+            due = due + limits.every if point < points else limits.steps + 1
     return taken
