@@ -15,19 +15,19 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 """Told apart by colour-blind readers too (Okabe and Ito)."""
 GREY = "#595959"
 DRAWN_POINTS = 1500
-TRIALS_SHOWN = 8
-"""Up to so many trials are drawn one by one, thinly, behind their mean."""
+LEGEND_COLUMNS = 3
 
 
 def plot_curves(found: RunCurves, title: str) -> Figure:
     """Mean best path length of each condition against moves, with its 95 % interval as a band."""
-    figure = Figure(figsize=(8.0, 4.8), layout="constrained")
+    figure = Figure(figsize=(8.0, 5.0), layout="constrained")
     axes = figure.add_subplot()
+    axes.axhline(found.cap, color=GREY, linewidth=0.8, linestyle=(0, (1, 3)))
     for place, curves in enumerate(found.curves.values()):
         _draw(axes, curves, COLOURS[place % len(COLOURS)])
-    _label(axes, found)
-    axes.set_title(title, loc="left", fontsize=13, fontweight="bold", pad=26)
-    axes.text(0, 1.03, _subtitle(found), transform=axes.transAxes, fontsize=9, color=GREY)
+    _scale(axes, found)
+    _explain(axes, len(found.curves), title)
+    figure.supxlabel(_note(found), x=0.01, ha="left", fontsize=8.5, color=GREY)
     return figure
 
 
@@ -41,29 +41,42 @@ def _draw(axes: Axes, curves: Curves, colour: str) -> None:
     band = interval(drawn)
     if band is not None:
         axes.fill_between(drawn.times, band.low, band.high, color=colour, alpha=0.18, linewidth=0)
-    if 1 < len(drawn.values) <= TRIALS_SHOWN:
-        axes.plot(drawn.times, drawn.values.T, color=colour, alpha=0.22, linewidth=0.6)
     trials = len(drawn.values)
     label = f"{curves.name}  ({trials} {'trial' if trials == 1 else 'trials'})"
     axes.plot(drawn.times, drawn.values.mean(axis=0), color=colour, linewidth=1.8, label=label)
 
 
-def _label(axes: Axes, found: RunCurves) -> None:
-    axes.set_xlabel("moves made by the learner", fontsize=10)
-    axes.set_ylabel("best path length (moves)", fontsize=10)
+def _scale(axes: Axes, found: RunCurves) -> None:
+    longest = max(float(curves.values.max()) for curves in found.curves.values())
     axes.set_xlim(0, max(float(curves.times[-1]) for curves in found.curves.values()))
-    axes.set_ylim(0, max(float(curves.values.max()) for curves in found.curves.values()) * 1.04)
+    axes.set_ylim(0, longest * 1.04)
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
-    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
     axes.grid(axis="y", color="#e4e4e4", linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=9, color=GREY)
-    axes.legend(frameon=False, fontsize=10, loc="upper right")
 
 
-def _subtitle(found: RunCurves) -> str:
-    return f"{interval_note(found)} A path that does not arrive counts as {found.cap} (the cap)."
+def _explain(axes: Axes, conditions: int, title: str) -> None:
+    """Axis labels, and a legend in rows between the title and the curves, where it hides none of them."""
+    axes.set_xlabel("moves made by the learner", fontsize=10)
+    axes.set_ylabel("best path length (moves)", fontsize=10)
+    columns = min(conditions, LEGEND_COLUMNS)
+    rows = -(-conditions // columns)
+    axes.legend(
+        frameon=False,
+        fontsize=10,
+        ncols=columns,
+        loc="lower left",
+        bbox_to_anchor=(-0.01, 1.0),
+        borderpad=0.2,
+    )
+    axes.set_title(title, loc="left", fontsize=13, fontweight="bold", pad=10 + 18 * rows)
+
+
+def _note(found: RunCurves) -> str:
+    return f"{interval_note(found)} A path that does not arrive counts as {found.cap} (the cap, dotted)."
 
 
 def interval_note(found: RunCurves) -> str:

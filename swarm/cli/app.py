@@ -6,6 +6,7 @@ import sys
 
 import typer
 
+from swarm.cli.analyze import analyze_command
 from swarm.cli.claims import claims_command
 from swarm.cli.reproduce import reproduce_command
 from swarm.errors import UserError
@@ -26,6 +27,7 @@ def _root() -> None:
 
 app.command("reproduce")(reproduce_command)
 app.command("claims")(claims_command)
+app.command("analyze")(analyze_command)
 
 
 def run() -> None:

@@ -1,0 +1,108 @@
+"""What an analysis found, in numbers: the same for the printed table, the JSON and the report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import polars as pl
+
+from swarm.analysis.area import mean_level
+from swarm.analysis.curves import Curves
+from swarm.analysis.read_run import LogContent, Reading
+from swarm.analysis.run_comparison import Comparison, NoComparison
+from swarm.analysis.run_curves import RunCurves, interval
+from swarm.analysis.threshold import median_time, times_to_threshold
+
+LOW_SHARE = 0.5
+"""A key is slow if it was seen at less than this share of its declared rate."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Everything that an analysis has to say; `as_json` is what `--json` prints."""
+
+    title: str
+    reading: Reading
+    curves: RunCurves
+    comparisons: Sequence[Comparison | NoComparison]
+    threshold: int
+    """Path length, in moves, at which a learner counts as having found a good path."""
+    notes: Sequence[str]
+
+    def conditions(self) -> dict[str, dict[str, Any]]:
+        """condition -> how far and how well its learners came."""
+        return {name: _condition(curves, self.threshold) for name, curves in self.curves.curves.items()}
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "messages": sum(log.messages for log in self.reading.logs),
+            "conditions": self.conditions(),
+            "cap": self.curves.cap,
+            "threshold": self.threshold,
+            "comparisons": [_comparison(found) for found in self.comparisons],
+            "health": health_totals(self.reading.health),
+            "logs": [_log(log) for log in self.reading.logs],
+            "notes": list(self.notes),
+        }
+
+
+def health_totals(health: pl.DataFrame) -> dict[str, Any]:
+    """Over all keys of all logs; `missing_events` only where nothing may be lost (learning, orders)."""
+    every = health.filter(pl.col("delivery") == "every")
+    slow = health.filter(pl.col("seen_hz") < LOW_SHARE * pl.col("declared_hz"))
+    return {
+        "missing": int(health["missing"].sum()),
+        "missing_events": int(every["missing"].sum()),
+        "duplicates": int(health["duplicates"].sum()),
+        "restarts": int((health["restart"] > 0).sum()),
+        "rejected": int(health["rejected"].sum()),
+        "slow_keys": slow["key"].unique().sort().to_list(),
+        "unreadable_keys": health.filter(~pl.col("readable"))["key"].unique().sort().to_list(),
+    }
+
+
+def _condition(curves: Curves, threshold: int) -> dict[str, Any]:
+    band = interval(curves)
+    arrival = times_to_threshold(curves, threshold, lasting=True)
+    median = median_time(arrival)
+    return {
+        "trials": len(curves.values),
+        "moves": int(curves.times[-1]),
+        "final_mean": float(curves.values[:, -1].mean()),
+        "final_low": None if band is None else float(band.low[-1]),
+        "final_high": None if band is None else float(band.high[-1]),
+        "mean_over_run": float(mean_level(curves).values.mean()),
+        "shortest": float(curves.values.min()),
+        "reached_threshold": int(arrival.observed.sum()),
+        "median_moves_to_threshold": None if median is None else int(median),
+    }
+
+
+def _comparison(found: Comparison | NoComparison) -> dict[str, Any]:
+    names: dict[str, Any] = {"first": found.first, "second": found.second}
+    if isinstance(found, NoComparison):
+        return names | {"reason": found.reason}
+    return names | {
+        "pairs": found.pairs,
+        "moves": found.moves,
+        "mean_difference": found.effect.mean_difference,
+        "mean_interval": [float(end) for end in found.effect.mean_interval],
+        "d_z": found.effect.d_z,
+        "p": found.p,
+        "windows": [[window.start, window.end] for window in found.windows],
+        "honest_windows": [[window.start, window.end] for window in found.honest_windows],
+    }
+
+
+def _log(log: LogContent) -> dict[str, Any]:
+    return {
+        "log": str(log.identity.path),
+        "run": log.identity.run,
+        "seed": log.identity.seed,
+        "trial": log.identity.trial,
+        "sha256": log.identity.digest,
+        "messages": log.messages,
+        "damage": [str(damage) for damage in log.damage],
+    }
