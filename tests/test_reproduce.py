@@ -15,10 +15,12 @@ import pytest
 
 from swarm.cli.reproduce import reproduce_figures
 from swarm.errors import UserError
+from swarm.experiments.catalogue import load_figure
 from swarm.experiments.executors import workers
 from swarm.experiments.paper.conditions import SMALL_NO_IMITATION
 from swarm.experiments.runner import missing_tasks, run_tasks
 from swarm.experiments.store import Timing, open_store
+from swarm.experiments.study import Study
 
 SHORT: dict[str, Any] = {"runs": 2, "steps": 2000, "seed": 5}
 
@@ -53,18 +55,20 @@ def test_a_figure_has_curves_ratios_times_a_table_and_a_plot(reference: tuple[Pa
     assert matplotlib.image.imread(out / "2-runs" / "fig3.png").shape[2] == 4
 
 
-def test_two_processes_give_the_same_numbers(reference: tuple[Path, dict[str, Any]], tmp_path: Path) -> None:
-    results = reproduce_figures(["fig3"], **SHORT, out=tmp_path, jobs=2)
-    assert numbers(results) == numbers(reference[1])
+@pytest.mark.parametrize("scheduler", ["processes", "dask"])
+def test_two_workers_give_the_same_numbers(
+    reference: tuple[Path, dict[str, Any]], tmp_path: Path, scheduler: str
+) -> None:
+    store = open_store(tmp_path, SHORT["seed"], SHORT["steps"])
+    study = load_figure("fig3")
+    assert isinstance(study, Study)
+    tasks = missing_tasks(store, dict.fromkeys(study.series.values(), 2))
+    with workers(scheduler, 2) as started:
+        assert started.count == 2
+        run_tasks(store, tasks, started, lambda _: None)
+    assert numbers(reproduce_figures(["fig3"], **SHORT, out=tmp_path)) == numbers(reference[1])
     for file in (reference[0] / "runs").rglob("*.parquet"):
         assert (tmp_path / file.relative_to(reference[0])).read_bytes() == file.read_bytes()
-
-
-def test_a_dask_cluster_gives_the_same_numbers(
-    reference: tuple[Path, dict[str, Any]], tmp_path: Path
-) -> None:
-    results = reproduce_figures(["fig3"], **SHORT, out=tmp_path, jobs=2, scheduler="dask")
-    assert numbers(results) == numbers(reference[1])
 
 
 def test_another_seed_gives_other_numbers(reference: tuple[Path, dict[str, Any]], tmp_path: Path) -> None:

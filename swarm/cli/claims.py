@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from swarm.cli.output import print_json, require_extra
-from swarm.cli.reproduce import Jobs, Json, Out, Runs, Scheduler, Seed, Steps, cores
+from swarm.cli.reproduce import Jobs, Json, Out, Runs, Scheduler, Seed, Steps, cores, told_when_interrupted
 
 Figures = Annotated[
     list[str] | None, typer.Argument(help="fig12, 12, all, or a study file.", show_default="all")
@@ -49,7 +49,8 @@ def claims_command(
     """Judge every claim of the text about the simulated figures, by the paper's test and an honest one."""
     asked = {"runs": runs, "steps": steps, "seed": seed, "out": out, "scheduler": scheduler}
     command = shlex.join(["swarm", *sys.argv[1:]])
-    result, lines = judge_claims(figure or [], command, **asked, jobs=cores() if jobs is None else jobs)
+    with told_when_interrupted():
+        result, lines = judge_claims(figure or [], command, **asked, jobs=cores() if jobs is None else jobs)
     if json:
         print_json(result)
     else:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -61,12 +62,25 @@ def reproduce_command(
 ) -> None:
     """Reproduce the paper's simulated figures: a plot and a table each, from runs in parallel."""
     asked = {"runs": runs, "steps": steps, "seed": seed, "out": out, "scheduler": scheduler}
-    results = reproduce_figures(figure, **asked, jobs=cores() if jobs is None else jobs)
+    with told_when_interrupted():
+        results = reproduce_figures(figure, **asked, jobs=cores() if jobs is None else jobs)
     if json:
         print_json(results)
         return
     for name, result in results.items():
         typer.echo(f"{name}: {', '.join(result['files'].values())}")
+
+
+@contextmanager
+def told_when_interrupted() -> Iterator[None]:
+    """Ctrl-C loses no finished run; say so."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo(
+            "interrupted: what was finished is kept, and the same command goes on from there", err=True
+        )
+        raise
 
 
 def cores() -> int:

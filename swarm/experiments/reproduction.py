@@ -23,8 +23,8 @@ from swarm.experiments.study import Figure, Study
 from swarm.experiments.time_left import TimeLeft
 from swarm.gridworld.condition import Condition
 
-RUNS_WORTH_A_PROCESS = 4
-"""Fewer are done before another process has started."""
+STEPS_WORTH_A_PROCESS = 60_000_000
+"""Fewer are simulated before another process has started."""
 
 
 def run_all(wanted: Iterable[tuple[Condition, int]], settings: Settings) -> RunStore:
@@ -40,8 +40,9 @@ def run_all(wanted: Iterable[tuple[Condition, int]], settings: Settings) -> RunS
 
 def _run_missing(store: RunStore, tasks: list[Task], settings: Settings) -> None:
     costs = expected_costs(store.condition(condition) for condition, _ in tasks)
-    jobs = min(settings.jobs, max(1, len(tasks) // RUNS_WORTH_A_PROCESS))
-    with workers(settings.scheduler, jobs) as started:
+    steps = sum(costs[condition.name] for condition, _ in tasks)
+    useful_jobs = min(len(tasks), 1 + int(steps / STEPS_WORTH_A_PROCESS))
+    with workers(settings.scheduler, min(settings.jobs, useful_jobs)) as started:
         time_left = TimeLeft(costs, count_by_condition(tasks), started.count)
         with progress_bar(len(tasks), time_left) as finished:
             run_tasks(store, tasks, started, finished)
