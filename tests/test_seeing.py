@@ -131,7 +131,7 @@ def test_the_gate_keeps_to_the_robot_that_was_seen_first(camera: SimulatedCamera
 
 
 def test_the_gate_follows_the_observers_own_turn(camera: SimulatedCamera, seer: Seer) -> None:
-    """Told of the turn, the seer expects the demonstrator elsewhere in the image; told of none, it does not."""
+    """Told of the turn, the seer expects the demonstrator elsewhere in the image."""
     turned = Pose(OBSERVER.x_m, OBSERVER.y_m, 0.25)
     for told_rad, seen in ((0.25, True), (0.0, False), (None, True)):
         seer.reset()

@@ -101,6 +101,8 @@ def test_a_missing_array_or_file_is_refused_by_name(tmp_path: Path) -> None:
 def test_learning_says_what_is_wrong_with_the_frames(camera: SimulatedCamera) -> None:
     with pytest.raises(UserError, match="no frame"):
         learn_colour_table([], MODEL, "red")
+    with pytest.raises(UserError, match="calibration for 160 x 120"):
+        learn_colour_table(calibration_frames(camera, "red", (0.3,)), MODEL.scaled(160, 120), "red")
     with pytest.raises(UserError, match="no colour of its own"):
         learn_colour_table(calibration_frames(camera, "white", (0.3,)), MODEL, "white")
     noise = np.random.default_rng(1).integers(0, 256, 320 * 240 * 2, dtype=np.uint8)

@@ -21,7 +21,7 @@ from robot_agent.imitation.cylinder import (
 def test_the_tangents_give_range_and_bearing_anywhere_in_view(range_m: float, bearing_deg: float) -> None:
     bearing_rad, half_rad = math.radians(bearing_deg), half_angle_rad(range_m)
     found = range_and_bearing(bearing_rad + half_rad, bearing_rad - half_rad)
-    assert found == (pytest.approx(range_m), pytest.approx(bearing_rad))
+    assert found == pytest.approx((range_m, bearing_rad))
 
 
 def test_the_covariance_is_that_of_random_edges() -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_agent.drivers.camera import PIXEL_FORMATS, Frame
-from robot_agent.drivers.camera_conditions import Conditions
+from robot_agent.drivers.camera_conditions import Conditions, conditions
 from robot_agent.drivers.camera_lens import Lens
 from robot_agent.drivers.camera_model import CameraModel
 from robot_agent.drivers.camera_scene import (
@@ -30,6 +30,8 @@ from robot_agent.drivers.camera_sensor import Sensor
 from robot_agent.drivers.camera_surfaces import FLOOR, LAMP_THETA_RAD, WALL, WALL_HEIGHT_M, Surfaces
 from swarm.errors import UserError
 from swarm.geometry import Pose
+
+__all__ = ["Conditions", "SceneCamera", "SimulatedCamera", "calibration_frames", "conditions"]
 
 DISTRACTOR_COLOURS = ("red", "orange", "brown", "blue", "green", "magenta", "yellow")
 

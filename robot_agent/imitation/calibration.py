@@ -30,10 +30,17 @@ PALE_PART_OF_LIGHT = 0.3
 def learn_colour_table(frames: Sequence[Frame], model: CameraModel, skirt: str) -> ColourTable:
     """The table of the skirt (named `skirt`) in the middle of the frames.
 
-    Raises UserError if there is no frame or the middle is not evenly of a colour.
+    Raises UserError if there is no frame, one of another size than the model's, or the middle is not
+    evenly of a colour.
     """
     if not frames:
         raise UserError("no frame to learn the skirt's colour from: is the camera connected?")
+    for frame in frames:
+        if (frame.width, frame.height) != (model.width, model.height):
+            raise UserError(
+                f"a {frame.width} x {frame.height} frame does not fit the camera's calibration for "
+                f"{model.width} x {model.height}: use the calibration file of that size"
+            )
     words = [frame_words(frame) for frame in frames]
     colours = word_colours() ** model.gamma
     seeds = colours[np.concatenate([_middle(image, model).ravel() for image in words])]

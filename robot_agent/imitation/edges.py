@@ -30,6 +30,8 @@ SHARP_ROWS = 10
 """A patch this high leaves out the row right above it, which the blur darkens above a post too."""
 DARK_PART_OF_WALL = 0.6
 WALL_ROWS = 4
+RIM_ROWS = 2
+"""The blur mixes into these the narrower body above the skirt and the shadow below it."""
 ROWS_UP_PART = 1 / 24
 ROWS_DOWN_PART = 1 / 64
 
@@ -75,8 +77,8 @@ class EdgeFinder:
     def _rows(self, blob: Blob) -> slice:
         """Rows that surely show skirt against wall: an even number, to treat the Bayer rows alike."""
         horizon, high = self._model.horizon_row, self._model.height
-        first = max(blob.top + 1, round(horizon - high * ROWS_UP_PART))
-        last = min(blob.bottom - 1, round(horizon + high * ROWS_DOWN_PART) + 1)
+        first = max(blob.top + RIM_ROWS, round(horizon - high * ROWS_UP_PART))
+        last = min(blob.bottom - RIM_ROWS, round(horizon + high * ROWS_DOWN_PART) + 1)
         if last - first < 2:
             first, last = int(horizon), int(horizon) + 2
         return slice(first, last - (last - first) % 2)
