@@ -43,7 +43,8 @@ class LogIdentity:
 
 def identify(path: Path) -> LogIdentity:
     """Read a log's metadata; LogError if it is no log of a run."""
-    metadata = LogReader(path).read_metadata()
+    reader = LogReader(path)
+    metadata = reader.read_metadata()
     run, robots = metadata.get("run", {}), metadata.get("robots", {})
     try:
         words = {robot: _role_and_condition(text) for robot, text in robots.items()}
@@ -60,6 +61,8 @@ def identify(path: Path) -> LogIdentity:
         )
     except (KeyError, ValueError) as error:
         reason = "does not say which run and trial it holds: was it recorded by swarm-server?"
+        if reader.damage:
+            reason = f"nothing can be read of it: {reader.damage[0]}"
         raise LogError(path, reason) from error
 
 

@@ -14,6 +14,10 @@ from swarm.analysis.windows import Window
 from swarm.geometry import Move
 
 _SHOWN = 20
+_LEGEND = (
+    "Path at the end: mean best path length in moves. The last two columns: how many trials came down to that "
+    "length and stayed there, and after how many moves half of all trials had (Kaplan-Meier)."
+)
 
 
 def report(summary: Summary, figure: str) -> str:
@@ -49,11 +53,10 @@ def condition_head(summary: Summary) -> list[str]:
         "condition",
         "trials",
         "moves",
-        "best path at the end",
+        "path at the end",
         "95 % interval",
-        "mean over the run",
-        f"trials at {summary.threshold} or less",
-        "median moves to that",
+        f"at {summary.threshold} or less",
+        "median moves to it",
     ]
 
 
@@ -65,15 +68,14 @@ def _condition_row(name: str, values: dict[str, Any]) -> list[str]:
         str(values["trials"]),
         f"{values['moves']:,}",
         text_number(values["final_mean"]),
-        "none (1 trial)" if low is None else f"{text_number(low)} to {text_number(high)}",
-        text_number(values["mean_over_run"]),
+        "none, 1 trial" if low is None else f"{text_number(low)} to {text_number(high)}",
         f"{values['reached_threshold']} of {values['trials']}",
         text_number(median, 0),
     ]
 
 
 def _conditions(summary: Summary) -> str:
-    return "## Learning\n\n" + _table(condition_head(summary), condition_rows(summary))
+    return f"## Learning\n\n{_table(condition_head(summary), condition_rows(summary))}\n\n{_LEGEND}"
 
 
 def _comparisons(comparisons: Sequence[Comparison | NoComparison]) -> str:
@@ -174,8 +176,8 @@ def _health(summary: Summary) -> str:
     text = (
         f"## Health\n\n{totals['missing']:,} messages missing ({totals['missing_events']:,} of them "
         f"learning events or orders), {totals['duplicates']:,} duplicates, "
-        f"{totals['rejected']:,} not decodable, {totals['restarts']:,} restarts of a sender, by key and epoch. "
-        "`tables/health.parquet` has every key."
+        f"{totals['rejected']:,} not decodable, {totals['restarts']:,} restarts of a sender "
+        "(by key). `tables/health.parquet` has every key."
     )
     odd = health.filter(
         (pl.col("missing") + pl.col("duplicates") + pl.col("rejected") + pl.col("restart") > 0)

@@ -57,20 +57,19 @@ def print_analysis(analysis: Analysis) -> None:
 
     from swarm.analysis.run_report import condition_head, condition_rows, sentence
 
-    console = Console(highlight=False)
-    table = Table(box=box.SIMPLE_HEAD, title=analysis.summary.title, title_justify="left")
-    for place, name in enumerate(condition_head(analysis.summary)):
-        table.add_column(name, justify="left" if place == 0 else "right")
-    for row in condition_rows(analysis.summary):
+    summary, console = analysis.summary, Console(highlight=False)
+    table = Table(box=box.SIMPLE_HEAD, title=summary.title, title_justify="left", pad_edge=False)
+    for place, name in enumerate(condition_head(summary)):
+        table.add_column(name, justify="left" if place == 0 else "right", no_wrap=place == 0)
+    for row in condition_rows(summary):
         table.add_row(*row)
     console.print(table)
-    for comparison in analysis.summary.comparisons:
-        console.print(sentence(comparison).replace("**", ""), markup=False)
-    for note in analysis.summary.notes:
+    for found in summary.comparisons:
+        console.print(sentence(found).replace("**", ""), markup=False)
+    for note in summary.notes:
         console.print(f"note: {note}", markup=False)
-    console.print(
-        f"\nreport  {analysis.files['report.md']}\nfigure  {analysis.files['curves.png']}", markup=False
-    )
+    for name in ("report.md", "curves.png"):
+        console.print(f"wrote {analysis.files[name]}", markup=False, soft_wrap=True)
 
 
 @contextmanager
