@@ -15,7 +15,7 @@ from swarm.geometry import Move
 
 _SHOWN = 20
 _LEGEND = (
-    "Path at the end: mean best path length in moves. The last two columns: how many trials came down to that "
+    "Path at the end: mean best path length in moves. Last columns: how many trials came down to that "
     "length and stayed there, and after how many moves half of all trials had (Kaplan-Meier)."
 )
 
