@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -100,6 +101,27 @@ def test_the_covariance_grows_as_the_square_of_the_range(camera: SimulatedCamera
     far = sighting(seer.look(frame(camera, body(1.0, 5))))
     assert far.range_sd_m / near.range_sd_m == pytest.approx((far.range_m / near.range_m) ** 2)
     assert far.bearing_rad == pytest.approx(math.radians(5), abs=0.003)
+
+
+@pytest.mark.parametrize("range_m", [0.13, 0.2, 0.35])
+def test_a_near_robot_fills_the_image_and_is_measured(
+    camera: SimulatedCamera, seer: Seer, range_m: float
+) -> None:
+    answer = sighting(seer.look(frame(camera, body(range_m, -6.0))))
+    assert answer.range_m == pytest.approx(range_m, rel=0.01)
+    assert answer.bearing_rad == pytest.approx(math.radians(-6.0), abs=0.003)
+
+
+@pytest.mark.parametrize("tilt_px", [-5.5, 5.5])
+def test_a_tilted_robot_sees_as_well(camera: SimulatedCamera, seer: Seer, tilt_px: float) -> None:
+    """One degree of tilt moves the horizon by 5.5 rows from where the calibration puts it."""
+    tilted = SimulatedCamera(
+        replace(MODEL, horizon=0.5 + tilt_px / 240), camera.conditions, np.random.default_rng(11)
+    )
+    for range_m in (0.3, 0.7, 1.1):
+        seer.reset()
+        answer = sighting(seer.look(frame(tilted, body(range_m, 8.0))))
+        assert answer.range_m == pytest.approx(range_m, rel=0.02)
 
 
 def test_an_empty_compartment(camera: SimulatedCamera, seer: Seer) -> None:

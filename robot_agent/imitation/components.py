@@ -67,11 +67,15 @@ def _longest_run(true: NDArray[np.bool_]) -> tuple[int, int]:
     return int(starts[longest]), int(ends[longest])
 
 
-def blobs_at_horizon(mask: NDArray[np.uint8], horizon_row: float) -> list[Blob]:
-    """The patches of non-zero pixels that are large and reach across the horizon, the largest first."""
+def blobs_at_horizon(mask: NDArray[np.uint8], horizon_row: float, slack_px: float) -> list[Blob]:
+    """The patches of non-zero pixels that are large and reach across the horizon, the largest first.
+
+    The horizon may be `slack_px` higher or lower than `horizon_row`.
+    """
     _, _, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8, ltype=cv2.CV_16U)
     tops, heights, areas = (stats[1:, i] for i in (cv2.CC_STAT_TOP, cv2.CC_STAT_HEIGHT, cv2.CC_STAT_AREA))
-    keep = (areas >= MIN_AREA_PART * mask.size) & (tops <= horizon_row) & (tops + heights > horizon_row)
+    across = (tops <= horizon_row + slack_px) & (tops + heights > horizon_row - slack_px)
+    keep = across & (areas >= MIN_AREA_PART * mask.size)
     rows = stats[1:][keep].tolist()
     found = [Blob(left, top, left + wide, top + high, area) for left, top, wide, high, area in rows]
     found = [trimmed(blob, mask) for blob in found]

@@ -33,7 +33,9 @@ WALL_ROWS = 4
 RIM_ROWS = 2
 """The blur mixes into these the narrower body above the skirt and the shadow below it."""
 ROWS_UP_PART = 1 / 24
-ROWS_DOWN_PART = 1 / 64
+"""Of the image's height above the horizon: farther up is no wall behind a robot that is near."""
+ENOUGH_ROWS = 6
+MOST_ROWS = 24
 
 
 @dataclass(frozen=True)
@@ -76,11 +78,13 @@ class EdgeFinder:
 
     def _rows(self, blob: Blob) -> slice:
         """Rows that surely show skirt against wall: an even number, to treat the Bayer rows alike."""
-        horizon, high = self._model.horizon_row, self._model.height
-        first = max(blob.top + RIM_ROWS, round(horizon - high * ROWS_UP_PART))
-        last = min(blob.bottom - RIM_ROWS, round(horizon + high * ROWS_DOWN_PART) + 1)
+        highest = round(self._model.horizon_row - self._model.height * ROWS_UP_PART)
+        first = max(blob.top + RIM_ROWS, highest)
+        last = max(blob.top + blob.height // 2, first + ENOUGH_ROWS)
+        last = min(last, blob.bottom - RIM_ROWS, highest + MOST_ROWS)
         if last - first < 2:
-            first, last = int(horizon), int(horizon) + 2
+            first = min(max(blob.top + blob.height // 2 - 1, 0), self._model.height - 2)
+            last = first + 2
         return slice(first, last - (last - first) % 2)
 
     def _edge(self, band: Words, start: int) -> float | None:

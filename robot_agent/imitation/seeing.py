@@ -27,7 +27,7 @@ from robot_agent.imitation.cylinder import (
 )
 from robot_agent.imitation.edges import EdgeFinder
 from robot_agent.imitation.gate import Gate, Place
-from robot_agent.imitation.shape import depth_from_height_m, fits_part_of_skirt, fits_skirt
+from robot_agent.imitation.shape import TILT_RAD, depth_from_height_m, fits_part_of_skirt, fits_skirt
 from swarm.errors import UserError, nearest
 
 MOUNTING_SD_RAD = math.radians(0.05)
@@ -159,7 +159,8 @@ class Seer:
 
     def _candidates(self, t_ns: int, words: Words, wall_light: float) -> list[Sighting | Reason]:
         """An answer for each patch of the skirt's colour, the largest first."""
-        blobs = blobs_at_horizon(self._is_skirt.take(words, mode="clip"), self.model.horizon_row)
+        mask = self._is_skirt.take(words, mode="clip")
+        blobs = blobs_at_horizon(mask, self.model.horizon_row, TILT_RAD * self.model.focal_px)
         return [self._measure(t_ns, words, blob, wall_light) for blob in blobs[:MAX_CANDIDATES]]
 
     def _measure(self, t_ns: int, words: Words, blob: Blob, wall_light: float) -> Sighting | Reason:

@@ -13,6 +13,8 @@ from robot_agent.imitation.components import Blob
 from robot_agent.imitation.cylinder import SKIRT_BOTTOM_M, SKIRT_RADIUS_M, SKIRT_TOP_M
 
 TOLERANCE = 0.12
+TILT_RAD = 0.02
+"""How far the robot may be tilted: it moves the whole image up or down."""
 SMALLEST_PART = 1 / 3
 """Of the skirt's width: less of it than this says too little."""
 
@@ -41,7 +43,8 @@ def depth_from_height_m(blob: Blob, model: CameraModel) -> float:
 
 def _fits_above(blob: Blob, model: CameraModel, depth_m: float, tolerance_px: float) -> bool:
     above_px = model.focal_px * (SKIRT_TOP_M - model.height_m) / depth_m
-    return _close(model.horizon_row - (blob.top - 0.5), above_px, tolerance_px)
+    slack_px = model.focal_px * TILT_RAD
+    return _close(model.horizon_row - (blob.top - 0.5), above_px, tolerance_px + slack_px)
 
 
 def _close(seen_px: float, expected_px: float, tolerance_px: float) -> bool:
