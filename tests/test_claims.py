@@ -134,6 +134,14 @@ def test_where_there_is_no_difference(same: Evidence) -> None:
     assert found(NoDifference(QUICK, SLOW), same).verdict in (Verdict.HOLDS, Verdict.IN_PART)
 
 
+def test_better_at_first_and_worse_for_longer_holds_in_part(tmp_path: Path) -> None:
+    settles_high = np.maximum(arriving(300, 100, seed=5), 12)
+    seen = evidence(tmp_path, {QUICK: settles_high, SLOW: arriving(800, 100, seed=6)})
+    finding = found(Better(QUICK, SLOW), seen)
+    assert finding.verdict is Verdict.IN_PART
+    assert finding.why == "better at first, worse for longer"
+
+
 def test_the_order_of_ratios(tmp_path: Path) -> None:
     rng = np.random.default_rng(1)
     means = np.array([0.35, 0.73, 0.35, 0.28, 0.01, 0.01, 0.01, 0.36])  # NE is too high for the claim
