@@ -80,6 +80,7 @@ class LogReader:
             self._know_indexed_channels(file)
             for record in self._records(file):
                 yield from self._take(record)
+            self._compare_with_index(file.tell())
         yield from [pending.take() for pending in self._pending.values() if pending.entries]
         if self.messages == 0:
             reason = f": {self.damage[0]}" if self.damage else ""
@@ -174,6 +175,12 @@ class LogReader:
         except _BROKEN as error:
             self._note(0, f"the index is damaged: {error}")
         file.seek(0)
+
+    def _compare_with_index(self, offset_bytes: int) -> None:
+        """A record that became another one by a flipped bit shows only here."""
+        if not self.damage and self.recorded_messages not in (None, self.messages):
+            reason = f"the index promises {self.recorded_messages} messages, {self.messages} were found"
+            self._note(offset_bytes, reason)
 
     def _note(self, offset_bytes: int, reason: object) -> None:
         self.damage.append(Damage(offset_bytes, self.messages, str(reason)))

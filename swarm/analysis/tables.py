@@ -9,12 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import polars as pl
-from google.protobuf.descriptor import FieldDescriptor
 from google.protobuf.message import Message
 
 from swarm import keys
+from swarm.analysis.columns import column
 from swarm.analysis.log_identity import LogIdentity
 from swarm.analysis.log_parts import LogChannel, Part
 from swarm.keys import Topic
@@ -144,24 +143,4 @@ def _origin(part: Part, identity: LogIdentity, good: slice | list[int]) -> dict[
 
 
 def _fields(message_type: type[Message], messages: list[Message]) -> dict[str, pl.Series]:
-    return {field.name: _column(field, messages) for field in message_type.DESCRIPTOR.fields}
-
-
-def _column(field: Any, messages: list[Message]) -> pl.Series:
-    name, count = field.name, len(messages)
-    values = (getattr(message, name) for message in messages)
-    if field.is_repeated:
-        return pl.Series([list(value) for value in values], dtype=pl.List(pl.Int64))
-    if field.enum_type is not None:
-        names = {number: value.name for number, value in field.enum_type.values_by_number.items()}
-        return pl.Series([names.get(value, str(value)) for value in values], dtype=pl.String)
-    if field.cpp_type == FieldDescriptor.CPPTYPE_STRING:
-        return pl.Series(list(values), dtype=pl.String)
-    return pl.Series(np.fromiter(values, dtype=_number_type(field), count=count))
-
-
-def _number_type(field: Any) -> Any:
-    """Counts become signed: differences of unsigned columns would wrap around."""
-    if field.cpp_type == FieldDescriptor.CPPTYPE_DOUBLE:
-        return np.float64
-    return np.bool_ if field.cpp_type == FieldDescriptor.CPPTYPE_BOOL else np.int64
+    return {field.name: column(field, messages) for field in message_type.DESCRIPTOR.fields}
