@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from robot_agent.brain import Brain, Transition
 from robot_agent.checkpoint import Checkpoint
@@ -15,6 +17,10 @@ from robot_agent.reports import Reporter
 from swarm.clock import NS_PER_S
 from swarm.errors import UserError
 from swarm.geometry import Compartment, Pose
+from swarm.messages import swarm_pb2 as pb
+
+if TYPE_CHECKING:
+    from robot_agent.visit import Visit
 
 
 class Activity(Enum):
@@ -27,9 +33,18 @@ class Activity(Enum):
     DECIDING = "deciding"
     """Standing in a cell's centre."""
     MOVING = "moving"
+    RESTING = "resting"
+    """Standing still in the goal or in the start, between two journeys."""
     BLOCKED = "blocked"
     """Standing out a move into a wall."""
+    VISITING = "visiting"
+    """Watching another robot, or being carried there and back."""
     FINISHED = "finished"
+
+
+STANDS_BETWEEN_MOVES = (Activity.WAITING, Activity.RETURNING, Activity.RESTING, Activity.DECIDING)
+BeginVisit = Callable[[pb.Order], "Visit"]
+"""Makes a visit of an order to watch; None in a robot without a camera."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +80,8 @@ class Agent:
         inbox: AgentInbox,
         reporter: Reporter,
         blocked_move_s: float,
+        rest_s: float,
+        begin_visit: BeginVisit | None = None,
     ) -> None:
         self.activity = Activity.WAITING
         self.state = compartment.grid.start
@@ -77,7 +94,11 @@ class Agent:
         self._inbox = inbox
         self._reporter = reporter
         self._blocked_move_ns = round(blocked_move_s * NS_PER_S)
+        self._rest_ns = round(rest_s * NS_PER_S)
+        self._rest_until_ns = 0
         self._choice: Choice | None = None
+        self._begin_visit = begin_visit
+        self._visit: Visit | None = None
         self._lost = False
         self._checkpoint: Checkpoint | None = None
 
@@ -103,20 +124,31 @@ class Agent:
         """Algorithm 3's choice, when the robot stands in a cell's centre and the run is on."""
         if self._inbox.stopped or self.brain.finished:
             self._stand(Activity.FINISHED if self.brain.finished else Activity.WAITING)
-        elif self.activity is Activity.WAITING and seen.pose and self._inbox.running(seen.t_ns):
+        elif self.activity is Activity.VISITING:
+            self._end_visit_when_home(seen)
+        elif self._inbox.visit_order and self._begin_visit and self.activity in STANDS_BETWEEN_MOVES:
+            self._stand(Activity.VISITING)
+            self.brain.abandon()
+            self._visit = self._begin_visit(self._inbox.visit_order)
+        elif self.activity is Activity.WAITING and self._is_at_home(seen) and self._inbox.running(seen.t_ns):
             self._go_to(self._cell_to_go_on_from(seen.pose), Activity.RETURNING)
         elif self.activity is Activity.DECIDING and self._inbox.running(seen.t_ns):
             self._begin(self.brain.choose(self.state), seen.t_ns)
 
     def act(self, seen: Seen) -> WheelSpeeds:
         """Drive as the motion says; what was really sent comes back."""
-        speeds = self._motion.step(seen.pose, seen.t_ns, seen.pose_age_s)
+        if self._visit:
+            speeds = self._visit.step(seen.pose, seen.t_ns)
+        else:
+            speeds = self._motion.step(seen.pose, seen.t_ns, seen.pose_age_s)
         return self.body.drive(speeds, seen.t_ns)
 
     def learn(self, seen: Seen) -> None:
         """Eq. 7 on arrival; from the goal the robot drives back to the start."""
         if self.activity is Activity.RETURNING and self._motion.arrived:
-            self.activity = Activity.DECIDING
+            self._rest(seen.t_ns)
+        elif self.activity is Activity.RESTING and seen.t_ns >= self._rest_until_ns:
+            self._begin_journey()
         elif self._choice and self._has_ended(self._choice, seen.t_ns):
             choice, self._choice = self._choice, None
             duration_s = (seen.t_ns - choice.t_ns) / NS_PER_S
@@ -127,7 +159,7 @@ class Agent:
             self.activity = Activity.DECIDING
             self._save()
             if self.state == self._compartment.grid.goal:
-                self._go_to(self._compartment.grid.start, Activity.RETURNING)
+                self._rest(seen.t_ns)
 
     def report(self, seen: Seen, sent: WheelSpeeds) -> None:
         """The command as sent at every tick, the status once a second."""
@@ -159,6 +191,17 @@ class Agent:
         else:
             self._go_to(self._choice.next_state, Activity.MOVING, leaving=self.state)
 
+    def _rest(self, t_ns: int) -> None:
+        self.activity = Activity.RESTING
+        self._rest_until_ns = t_ns + self._rest_ns
+
+    def _begin_journey(self) -> None:
+        """From the goal the robot drives back to the start; from anywhere else it may decide."""
+        if self.state == self._compartment.grid.goal:
+            self._go_to(self._compartment.grid.start, Activity.RETURNING)
+        else:
+            self.activity = Activity.DECIDING
+
     def _go_to(self, state: int, activity: Activity, leaving: int | None = None) -> None:
         self.state = state if leaving is None else leaving
         self.activity = activity
@@ -178,13 +221,27 @@ class Agent:
     def _displaced(self) -> None:
         """Somebody carried the robot: nothing is learnt, and it goes on from the cell where it is now."""
         self._estimator.reset()
+        if self._visit:
+            self._visit.displaced()
+            return
         self._stand(Activity.WAITING)
         self._lost = True
         self._reporter.event("displaced", f"carried away from cell {self.state}; the move is not learnt from")
 
-    def _cell_to_go_on_from(self, pose: Pose) -> int:
+    def _end_visit_when_home(self, seen: Seen) -> None:
+        """After a visit a new journey begins at the start, as soon as the robot is back at home."""
+        told = self._visit and self._visit.done and not self._inbox.visit_order
+        if told and self._is_at_home(seen):
+            self._visit = None
+            self.state = self._compartment.grid.start
+            self.activity = Activity.WAITING
+
+    def _is_at_home(self, seen: Seen) -> bool:
+        return seen.pose is not None and self._compartment.state_at(seen.pose.x_m, seen.pose.y_m) is not None
+
+    def _cell_to_go_on_from(self, pose: Pose | None) -> int:
         """The cell that it was to stand in, or after it was carried away the one where it is."""
-        if not self._lost:
+        if not self._lost or pose is None:
             return self.state
         self._lost = False
         state = self._compartment.state_at(pose.x_m, pose.y_m)

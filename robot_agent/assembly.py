@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 from google.protobuf.message import Message
 
-from robot_agent.agent import Agent
+from robot_agent.agent import Agent, BeginVisit
 from robot_agent.brain import Brain, Publish
-from robot_agent.drivers.body import Body
 from robot_agent.drivers.epuck import EpuckGeometry
 from robot_agent.drivers.sim import BodyFaults, SimulatedBody
 from robot_agent.drivers.sim_robot import SimulatedRobot
@@ -47,16 +47,35 @@ class Assembly:
             self._link.publish(topic, message, name)
 
         motion = MotionSettings(period_s=settings.simulation.tick_s)
+        brain, body = self._brain(robot, publish), self._body(robot, geometry)
         return Agent(
             settings.compartment(robot),
-            self._brain(robot, publish),
-            self._body(robot, geometry),
+            brain,
+            body,
             PoseEstimator(geometry),
             Motion(motion, geometry),
             AgentInbox(self._link, name),
             Reporter(publish),
             settings.learning.blocked_move_s,
+            settings.learning.rest_s,
+            self._visits(robot, brain, body, geometry, publish),
         )
+
+    def _visits(
+        self,
+        robot: RobotSettings,
+        brain: Brain,
+        body: SimulatedRobot,
+        geometry: EpuckGeometry,
+        publish: Publish,
+    ) -> BeginVisit | None:
+        """Only a robot that watches loads what it takes to see."""
+        if not robot.watches or not isinstance(brain, Learner):
+            return None
+        from robot_agent.sight import visits_of
+
+        generator = partial(self._generator, robot)
+        return visits_of(self._experiment, robot, brain, body, geometry, self._link, publish, generator)
 
     def _brain(self, robot: RobotSettings, publish: Publish) -> Brain:
         grid = self._experiment.compartment(robot).grid
@@ -80,7 +99,7 @@ class Assembly:
             learner.remember(path, "given")
         return learner
 
-    def _body(self, robot: RobotSettings, geometry: EpuckGeometry) -> Body:
+    def _body(self, robot: RobotSettings, geometry: EpuckGeometry) -> SimulatedRobot:
         faults = self._experiment.body
         compartment = self._experiment.compartment(robot)
         body = SimulatedBody(

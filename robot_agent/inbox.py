@@ -47,6 +47,11 @@ class AgentInbox:
         return heard and self._phase == pb.RunState.RUNNING and self._order.kind == pb.Order.RUN
 
     @property
+    def visit_order(self) -> pb.Order | None:
+        """The order to watch another robot, while it stands."""
+        return self._order if self._order.kind == pb.Order.WATCH else None
+
+    @property
     def stopped(self) -> bool:
         """Whether the trial is over for this robot."""
         return self._order.kind == pb.Order.STOP or self._phase == pb.RunState.ENDED

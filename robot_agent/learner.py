@@ -128,6 +128,7 @@ class Learner:
                 outcome=ended.outcome.value,
                 q_change=ended.q_change,
                 ratio=self._controller.memory.ratio(ended.remembered),
+                started_move=self.moves - ended.moves + 1,
             ),
         )
 

@@ -2,36 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
-from google.protobuf.message import Message
-
 from server.batch import Batch
+from server.copy_errors import CopyErrors
+from server.hand import Hand, Publish
+from server.visits import Visits
+from server.world import World
 from swarm import keys
 from swarm.clock import NS_PER_S
 from swarm.errors import RunFailedError
 from swarm.experiment import Experiment
-from swarm.feed import Feed
-from swarm.keys import Topic, topic_of
+from swarm.feed import Feed, Received
+from swarm.geometry import Grid
+from swarm.keys import topic_of
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header
 
 RUN_STATE_PERIOD_NS = NS_PER_S
 STUCK_AFTER_NS = 600 * NS_PER_S
-Publish = Callable[[Topic[Any], Message, str], None]
 
 
 class Conductor:
     """Follows a trial from what is on the wire, and speaks to the robots by the same wire."""
 
-    def __init__(self, experiment: Experiment, trial: int, publish: Publish) -> None:
+    def __init__(self, experiment: Experiment, trial: int, publish: Publish, hand: Hand) -> None:
         self._experiment = experiment
         self._trial = trial
         self._publish = publish
         self._moves = Feed(keys.MOVE)
         self._best_paths = Feed(keys.BEST_PATH)
-        self._feeds: dict[Topic[Any], Feed[Any]] = {keys.MOVE: self._moves, keys.BEST_PATH: self._best_paths}
+        self._paths = Feed(keys.PATH)
+        self._visit_words = Feed(keys.VISIT)
+        self._observations = Feed(keys.OBSERVATION)
+        self._truths = Feed(keys.TRUTH)
+        feeds: list[Feed[Any]] = [
+            self._moves,
+            self._best_paths,
+            self._paths,
+            self._visit_words,
+            self._observations,
+        ]
+        self._feeds = {feed.topic: feed for feed in feeds}
+        self._goal = Grid(experiment.arena.columns, experiment.arena.rows).goal
+        self._visits = Visits(experiment, publish, hand)
+        self._world = World(experiment, publish)
+        watched_by = {robot.id: robot.watches for robot in experiment.learners if robot.watches}
+        self._copy_errors = CopyErrors(watched_by, publish)
         self._state_due_ns = 0
         self._moved_ns = 0
         self._ending = False
@@ -48,15 +65,12 @@ class Conductor:
 
     def step(self, batch: Batch) -> None:
         """Take in a batch; announce the run's state once a second and when it changes."""
-        for item in batch.items:
-            found = topic_of(item.key)
-            if found and (feed := self._feeds.get(found[0])):
-                feed.put(item.key, Header(item.epoch, item.sequence, item.publish_t_ns), item.payload)
+        self._listen(batch)
         for move in self._moves.take():
-            self.moves[move.robot] = move.message.number
-            self._moved_ns = batch.t_ns
+            self._note_move(move, batch.t_ns)
         for best in self._best_paths.take():
             self.best_path[best.robot] = best.message.length
+        self._conduct_visits()
         self.bad_messages = sum(feed.bad for feed in self._feeds.values())
         self._ending = all(
             self.moves[robot.id] >= self._experiment.run.moves for robot in self._experiment.learners
@@ -64,6 +78,40 @@ class Conductor:
         if batch.t_ns >= self._state_due_ns or self._ending:
             self._state_due_ns = batch.t_ns + RUN_STATE_PERIOD_NS
             self.announce(pb.RunState.ENDED if self._ending else pb.RunState.RUNNING)
+
+    def _listen(self, batch: Batch) -> None:
+        """Sort the batch into the feeds; truths matter only while somebody watches."""
+        watching = bool(self._visits.watching)
+        for item in batch.items:
+            found = topic_of(item.key)
+            if found is None:
+                continue
+            feed = self._feeds.get(found[0])
+            if found[0] is keys.TRUTH and watching:
+                feed = self._truths
+            if feed:
+                feed.put(item.key, Header(item.epoch, item.sequence, item.publish_t_ns), item.payload)
+
+    def _note_move(self, received: Received[pb.Move], t_ns: int) -> None:
+        robot, move = received.robot, received.message
+        self.moves[robot] = move.number
+        self._moved_ns = t_ns
+        self._copy_errors.moved(robot, move, received.header.t_ns)
+        if move.next_state == self._goal:
+            self._visits.track_ended(robot, move.track)
+
+    def _conduct_visits(self) -> None:
+        for path in self._paths.take():
+            if path.message.visit:
+                self._visits.path_remembered(path.robot)
+        for observation in self._observations.take():
+            self._copy_errors.observed(observation.robot, observation.message)
+        for word in self._visit_words.take():
+            self._visits.heard(word.robot, word.message)
+            if word.message.phase == pb.Visit.DONE:
+                self._copy_errors.visit_done(word.robot, word.message)
+        self._visits.order_due()
+        self._world.step(self._truths.take(), self._visits.watching)
 
     def check_progress(self, t_ns: int) -> None:
         """RunFailedError if no robot has moved for ten minutes of the run: a simulation waits for nobody."""

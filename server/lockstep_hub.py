@@ -74,7 +74,9 @@ class LockstepHub:
         key = topic.key(robot)
         t_ns = self.number * self._tick_ns
         number = self._sequencer.following(key)
-        self._own.append(LogItem(key, EPOCH, number, t_ns, message.SerializeToString()))
+        item = LogItem(key, EPOCH, number, t_ns, message.SerializeToString())
+        self._own.append(item)
+        self._to_deliver.append(item)
 
     def advance(self) -> None:
         """Send the next tick, and with it to each process what it listens to."""
@@ -121,11 +123,10 @@ class LockstepHub:
     def _batch(self, items: list[pb.Item]) -> Batch:
         t_ns = self.number * self._tick_ns
         found = [LogItem(item.key, item.epoch, item.sequence, t_ns, item.payload) for item in items]
-        found.extend(self._own)
-        self._own = []
         found.sort()
         self._to_deliver = found
-        return Batch(t_ns, found)
+        own, self._own = self._own, []
+        return Batch(t_ns, sorted(found + own))
 
     def _readers_of(self, key: str) -> tuple[str, ...]:
         if key not in self._readers:

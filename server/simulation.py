@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from server.conductor import Conductor
+from server.hand import SimulatedHand
 from server.health import Health
 from server.hub import Hub
 from server.live_hub import LiveHub
@@ -71,7 +72,7 @@ class Simulation:
         ):
             claim(bus, Presence("server", "server", socket.gethostname(), time.time_ns()))
             hub = self._hub(bus, [spec.name for spec in specs], pace, supervisor.check)
-            conductor = Conductor(self.experiment, trial, hub.publish)
+            conductor = Conductor(self.experiment, trial, hub.publish, SimulatedHand(hub.publish))
             recorder = Recorder(self.directory.log(trial), metadata(self.experiment, file, trial))
             flush_every = LOCKSTEP_BATCHES_BETWEEN_FLUSHES
             if not pace.lockstep:

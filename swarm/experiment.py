@@ -6,18 +6,22 @@ one id or compartments that overlap.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
 from typing import Annotated
 
 from swarm.config import Between, ConfigFile
-from swarm.geometry import Compartment, Grid
+from swarm.errors import nearest
+from swarm.geometry import Compartment, Grid, Pose
 from swarm.keys import is_id
 from swarm.learning.memory import Approach
 from swarm.learning.paths import ObservedPath
 
 NonNegative = Between(0)
+
+BEYOND_CORNER_M = 0.05
 
 
 class Role(Enum):
@@ -64,6 +68,8 @@ class LearningSettings:
     """Eq. 7's beta: 0.149/s is a discount of 0.7 over a move of 2.4 s."""
     blocked_move_s: Annotated[float, Between(0, 60)] = 0.5
     """A move into a wall is decided, not driven; the robot stands still this long."""
+    rest_s: Annotated[float, Between(0, 60)] = 1.5
+    """Standing still in the goal and in the start: what tells a watcher where a journey ends."""
     path_length_cap: Annotated[int, Between(1, 100_000)] = 100
     """What a greedy path that never arrives counts as."""
 
@@ -94,6 +100,41 @@ class TrackerSettings:
     blackout_s: Annotated[float, NonNegative] = 3.0
 
 
+class Watching(Enum):
+    """How what was seen becomes moves."""
+
+    BEST = "best"
+    """320 x 240, edges to a fraction of a pixel, smoothing, and the moves that explain all of it."""
+    PAPER = "paper"
+    """160 x 120, the size of the patch in whole pixels, regression lines."""
+
+
+@dataclass(frozen=True)
+class VisitSettings:
+    """[visits]: when robots watch others, and how (section 3.4)."""
+
+    every_tracks: Annotated[int, Between(1, 100_000)] = 10
+    """A learner visits at the start and after so many journeys, until its memory is full."""
+    duration_s: Annotated[float, Between(1, 600)] = 30.0
+    frames_per_s: Annotated[float, Between(0.5, 30)] = 5.0
+    moves: Annotated[int, Between(1, 100)] = 5
+    """Consecutive moves that are remembered of what was seen."""
+    profile: Watching = Watching.BEST
+
+
+@dataclass(frozen=True)
+class CameraSettings:
+    """[camera]: the camera of robots that watch."""
+
+    driver: str = "sim"
+    calibration: str = ""
+    """A calibration file (see deploy/cameras); the simulated camera has one built in."""
+    colours: str = ""
+    """A colour table made by `robot-agent calibrate`; the simulated camera learns one at the start."""
+    conditions: str = "realistic"
+    """Light of the simulated camera: realistic, hard, dark or clean."""
+
+
 @dataclass(frozen=True)
 class SimulationSettings:
     """[simulation]: the length of a tick and the number of processes for the robots."""
@@ -113,6 +154,9 @@ class RobotSettings:
     role: Role = Role.LEARNER
     condition: str = ""
     """Learners of one condition share a curve; the role's name if empty."""
+    watches: str = ""
+    """The robot whose moves it copies through its camera; none if empty."""
+    skirt: str = "red"
     paths: tuple[tuple[str, ...], ...] = ()
     """Paths given at the start, each a list of compass moves."""
 
@@ -134,6 +178,8 @@ class Experiment:
     learning: LearningSettings = field(default_factory=LearningSettings)
     body: BodySettings = field(default_factory=BodySettings)
     tracker: TrackerSettings = field(default_factory=TrackerSettings)
+    visits: VisitSettings = field(default_factory=VisitSettings)
+    camera: CameraSettings = field(default_factory=CameraSettings)
     simulation: SimulationSettings = field(default_factory=SimulationSettings)
 
     @classmethod
@@ -162,6 +208,14 @@ class Experiment:
         """The walled square that belongs to a robot."""
         grid = Grid(self.arena.columns, self.arena.rows)
         return Compartment(*robot.south_west_m, grid, self.arena.cell_m)
+
+    def observers_place(self, demonstrator: RobotSettings) -> Pose:
+        """Where a robot stands to watch: just outside the compartment's south-east corner, facing in.
+
+        The paper's place, in that corner, lies inside the goal cell, which the demonstrator enters.
+        """
+        watched = self.compartment(demonstrator)
+        return Pose(watched.east_m + BEYOND_CORNER_M, watched.south_m - BEYOND_CORNER_M, 0.75 * math.pi)
 
     def robot_named(self, name: str) -> RobotSettings:
         return next(robot for robot in self.robot if robot.id == name)
@@ -196,7 +250,17 @@ def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file
         robot.given_paths()
     except ValueError as error:
         raise file.error((*where, "paths"), str(error)) from error
+    _check_watching(experiment, number, robot, file)
     _check_place(experiment, number, robot, file)
+
+
+def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number, "watches")
+    known = [other.id for other in experiment.robot if other.id != robot.id]
+    if robot.watches and robot.role is not Role.LEARNER:
+        raise file.error(where, f"{robot.id!r} is no learner: it cannot watch")
+    if robot.watches and robot.watches not in known:
+        raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {nearest(robot.watches, known)}")
 
 
 def _check_place(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:

@@ -68,8 +68,16 @@ STATUS = Topic("robot/{robot}/status", pb.Status, "activity and health", 1.0, De
 EVENT = Topic("robot/{robot}/event", pb.Event, "what a person should know", None, Delivery.EVERY, True)
 TRACKER_EVENT = Topic("tracker/event", pb.Event, "rejected poses, lost robots", None, Delivery.EVERY, True)
 SERVER_EVENT = Topic("server/event", pb.Event, "what the conductor did", None, Delivery.EVERY, True)
+VISIT = Topic("robot/{robot}/visit", pb.Visit, "watching another robot", None, Delivery.EVERY, True)
+OBSERVATION = Topic(
+    "robot/{robot}/observation", pb.Observation, "how frames became moves", None, Delivery.EVERY, True
+)
+COPY_ERROR = Topic(
+    "server/{robot}/copy_error", pb.CopyError, "copied against real moves", None, Delivery.EVERY, True
+)
 TRUTH = Topic("sim/{robot}/truth", pb.Truth, "simulation: where it really is", 10.0, Delivery.NEWEST, True)
 CARRY = Topic("sim/{robot}/carry", pb.Carry, "simulation: moved by hand", None, Delivery.EVERY, True)
+VIEW = Topic("sim/{robot}/view", pb.View, "simulation: what its camera faces", None, Delivery.NEWEST, False)
 
 TABLE: tuple[Topic[Any], ...] = (
     POSE,
@@ -82,10 +90,14 @@ TABLE: tuple[Topic[Any], ...] = (
     REPLAY,
     STATUS,
     EVENT,
+    VISIT,
+    OBSERVATION,
+    COPY_ERROR,
     TRACKER_EVENT,
     SERVER_EVENT,
     TRUTH,
     CARRY,
+    VIEW,
 )
 
 LOCKSTEP_TICK = "lockstep/tick/{process}"

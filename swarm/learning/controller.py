@@ -89,7 +89,9 @@ class Controller:
         """Update Q(s, a) by eq. 1 or 7 and return its change; end the replay where the path ends.
 
         A replay ends with its last action, at a wall or obstacle (`blocked`), or in the goal
-        (`arrived`). The change of its last action counts towards the comparison of average Q values.
+        (`arrived`). The change of its last action counts towards the comparison of average Q values
+        (section 2.2, approach 3), which makes no difference to speak of: without it the R values of
+        figure 14 are lower by 0.01.
         """
         self.ended = None
         change = self.q.update(state, action, reward, next_state, discount)

@@ -48,7 +48,11 @@ class ObservedPath:
 
 @dataclass(frozen=True)
 class AccessedPolicy:
-    """Section 2.4: the other agent's greedy action in the observer's own state, for up to `length` moves."""
+    """Section 2.4: the other agent's greedy action in the observer's own state, for up to `length` moves.
+
+    "Based on the previous mechanism": to the memory it is a path like any other, whose one R regulates
+    how often it is started.
+    """
 
     other: QTable
     length: int = 20

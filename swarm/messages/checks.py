@@ -40,19 +40,48 @@ def decode(message_type: type[M], payload: bytes) -> M:
 
 def check(message: Message) -> None:
     """BadMessageError unless every float is finite and plausible and every time is positive."""
-    for name, limit, hint in _limits(message.DESCRIPTOR):
-        value = getattr(message, name)
-        if not -limit <= value <= limit:
-            raise BadMessageError(f"{message.DESCRIPTOR.name}.{name} is {value!r}: not plausible ({hint})")
-        if name.endswith("t_ns") and value < 0:
-            raise BadMessageError(f"{message.DESCRIPTOR.name}.{name} is {value}: a time before the run")
+    for name, limit, hint in _numbers(message.DESCRIPTOR):
+        _check_number(message, name, getattr(message, name), limit, hint)
+    for name, limit, hint in _lists(message.DESCRIPTOR):
+        for value in getattr(message, name):
+            _check_number(message, name, value, limit, hint)
+    for name in _message_lists(message.DESCRIPTOR):
+        for part in getattr(message, name):
+            check(part)
+
+
+def _check_number(message: Message, name: str, value: float, limit: float, hint: str) -> None:
+    if not -limit <= value <= limit:
+        raise BadMessageError(f"{message.DESCRIPTOR.name}.{name} is {value!r}: not plausible ({hint})")
+    if value < 0 and name.endswith("t_ns"):
+        raise BadMessageError(f"{message.DESCRIPTOR.name}.{name} is {value}: a time before the run")
+
+
+Numbers = tuple[tuple[str, float, str], ...]
 
 
 @cache
-def _limits(descriptor: Descriptor) -> tuple[tuple[str, float, str], ...]:
-    """(field, largest magnitude, hint) for each number of a message type."""
+def _numbers(descriptor: Descriptor) -> Numbers:
+    """(field, largest magnitude, hint) of each single number of a message type."""
+    return _limits(descriptor, repeated=False)
+
+
+@cache
+def _lists(descriptor: Descriptor) -> Numbers:
+    return _limits(descriptor, repeated=True)
+
+
+@cache
+def _message_lists(descriptor: Descriptor) -> tuple[str, ...]:
+    kind = FieldDescriptor.CPPTYPE_MESSAGE
+    return tuple(field.name for field in descriptor.fields if field.is_repeated and field.cpp_type == kind)
+
+
+def _limits(descriptor: Descriptor, *, repeated: bool) -> Numbers:
     limits = []
     for field in descriptor.fields:
+        if field.is_repeated != repeated:
+            continue
         if field.cpp_type == FieldDescriptor.CPPTYPE_DOUBLE:
             limits.append((field.name, *_range_of(field.name)))
         elif field.name.endswith("t_ns"):

@@ -325,6 +325,7 @@ class Replay(_message.Message):
     OUTCOME_FIELD_NUMBER: _builtins.int
     Q_CHANGE_FIELD_NUMBER: _builtins.int
     RATIO_FIELD_NUMBER: _builtins.int
+    STARTED_MOVE_FIELD_NUMBER: _builtins.int
     path: _builtins.int
     moves: _builtins.int
     outcome: _builtins.str
@@ -332,6 +333,8 @@ class Replay(_message.Message):
     q_change: _builtins.float
     ratio: _builtins.float
     """R_i afterwards, eq. 4"""
+    started_move: _builtins.int
+    """the number of its first move"""
     def __init__(
         self,
         *,
@@ -340,14 +343,272 @@ class Replay(_message.Message):
         outcome: _builtins.str = ...,
         q_change: _builtins.float = ...,
         ratio: _builtins.float = ...,
+        started_move: _builtins.int = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["moves", b"moves", "outcome", b"outcome", "path", b"path", "q_change", b"q_change", "ratio", b"ratio"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["moves", b"moves", "outcome", b"outcome", "path", b"path", "q_change", b"q_change", "ratio", b"ratio", "started_move", b"started_move"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 
 Global___Replay: _TypeAlias = Replay  # noqa: Y015
+
+@_typing.final
+class Visit(_message.Message):
+    """A visit: the robot stands where it can watch another one."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    class _Phase:
+        ValueType = _typing.NewType("ValueType", _builtins.int)
+        V: _TypeAlias = ValueType  # noqa: Y015
+
+    class _PhaseEnumTypeWrapper(_enum_type_wrapper._EnumTypeWrapper[Visit._Phase.ValueType], _builtins.type):
+        DESCRIPTOR: _descriptor.EnumDescriptor
+        PHASE_UNSPECIFIED: Visit._Phase.ValueType  # 0
+        READY: Visit._Phase.ValueType  # 1
+        """stands still and may be carried to the observer's place"""
+        WATCHING: Visit._Phase.ValueType  # 2
+        """stands there, by its own pose, and watches"""
+        DONE: Visit._Phase.ValueType  # 3
+        """may be carried back"""
+
+    class Phase(_Phase, metaclass=_PhaseEnumTypeWrapper): ...
+    PHASE_UNSPECIFIED: Visit.Phase.ValueType  # 0
+    READY: Visit.Phase.ValueType  # 1
+    """stands still and may be carried to the observer's place"""
+    WATCHING: Visit.Phase.ValueType  # 2
+    """stands there, by its own pose, and watches"""
+    DONE: Visit.Phase.ValueType  # 3
+    """may be carried back"""
+
+    VISIT_FIELD_NUMBER: _builtins.int
+    PHASE_FIELD_NUMBER: _builtins.int
+    PATH_FIELD_NUMBER: _builtins.int
+    REASON_FIELD_NUMBER: _builtins.int
+    visit: _builtins.int
+    phase: Global___Visit.Phase.ValueType
+    path: _builtins.int
+    """DONE: the path that was remembered, 0 for none"""
+    reason: _builtins.str
+    """DONE: why no path was remembered"""
+    def __init__(
+        self,
+        *,
+        visit: _builtins.int = ...,
+        phase: Global___Visit.Phase.ValueType = ...,
+        path: _builtins.int = ...,
+        reason: _builtins.str = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["path", b"path", "phase", b"phase", "reason", b"reason", "visit", b"visit"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___Visit: _TypeAlias = Visit  # noqa: Y015
+
+@_typing.final
+class Look(_message.Message):
+    """One camera frame of an observation, and what it showed."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    CAPTURED_T_NS_FIELD_NUMBER: _builtins.int
+    FRAME_HASH_FIELD_NUMBER: _builtins.int
+    RANGE_M_FIELD_NUMBER: _builtins.int
+    BEARING_RAD_FIELD_NUMBER: _builtins.int
+    X_M_FIELD_NUMBER: _builtins.int
+    Y_M_FIELD_NUMBER: _builtins.int
+    NOT_SEEN_FIELD_NUMBER: _builtins.int
+    captured_t_ns: _builtins.int
+    frame_hash: _builtins.int
+    """BLAKE2b of the frame's bytes, 8 bytes"""
+    range_m: _builtins.float
+    """from the camera; 0 if the demonstrator was not seen"""
+    bearing_rad: _builtins.float
+    """from the camera's axis"""
+    x_m: _builtins.float
+    y_m: _builtins.float
+    not_seen: _builtins.str
+    """why, if it was not"""
+    def __init__(
+        self,
+        *,
+        captured_t_ns: _builtins.int = ...,
+        frame_hash: _builtins.int = ...,
+        range_m: _builtins.float = ...,
+        bearing_rad: _builtins.float = ...,
+        x_m: _builtins.float = ...,
+        y_m: _builtins.float = ...,
+        not_seen: _builtins.str = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["bearing_rad", b"bearing_rad", "captured_t_ns", b"captured_t_ns", "frame_hash", b"frame_hash", "not_seen", b"not_seen", "range_m", b"range_m", "x_m", b"x_m", "y_m", b"y_m"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___Look: _TypeAlias = Look  # noqa: Y015
+
+@_typing.final
+class Smoothed(_message.Message):
+    """Where the observer believes that the demonstrator was, from all frames together."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    CAPTURED_T_NS_FIELD_NUMBER: _builtins.int
+    X_M_FIELD_NUMBER: _builtins.int
+    Y_M_FIELD_NUMBER: _builtins.int
+    captured_t_ns: _builtins.int
+    x_m: _builtins.float
+    y_m: _builtins.float
+    def __init__(
+        self,
+        *,
+        captured_t_ns: _builtins.int = ...,
+        x_m: _builtins.float = ...,
+        y_m: _builtins.float = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["captured_t_ns", b"captured_t_ns", "x_m", b"x_m", "y_m", b"y_m"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___Smoothed: _TypeAlias = Smoothed  # noqa: Y015
+
+@_typing.final
+class Segment(_message.Message):
+    """A straight stretch of the demonstration."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    TURN_RAD_FIELD_NUMBER: _builtins.int
+    LENGTH_M_FIELD_NUMBER: _builtins.int
+    HEADING_RAD_FIELD_NUMBER: _builtins.int
+    BEGAN_T_NS_FIELD_NUMBER: _builtins.int
+    ENDED_T_NS_FIELD_NUMBER: _builtins.int
+    turn_rad: _builtins.float
+    length_m: _builtins.float
+    heading_rad: _builtins.float
+    began_t_ns: _builtins.int
+    ended_t_ns: _builtins.int
+    def __init__(
+        self,
+        *,
+        turn_rad: _builtins.float = ...,
+        length_m: _builtins.float = ...,
+        heading_rad: _builtins.float = ...,
+        began_t_ns: _builtins.int = ...,
+        ended_t_ns: _builtins.int = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["began_t_ns", b"began_t_ns", "ended_t_ns", b"ended_t_ns", "heading_rad", b"heading_rad", "length_m", b"length_m", "turn_rad", b"turn_rad"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___Segment: _TypeAlias = Segment  # noqa: Y015
+
+@_typing.final
+class Observation(_message.Message):
+    """The ledger of one visit: how frames became moves."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    VISIT_FIELD_NUMBER: _builtins.int
+    PROFILE_FIELD_NUMBER: _builtins.int
+    FRAMES_FIELD_NUMBER: _builtins.int
+    LOOKS_FIELD_NUMBER: _builtins.int
+    SMOOTHED_FIELD_NUMBER: _builtins.int
+    SEGMENTS_FIELD_NUMBER: _builtins.int
+    MOVES_FIELD_NUMBER: _builtins.int
+    CONFIDENCES_FIELD_NUMBER: _builtins.int
+    WINDOW_FIELD_NUMBER: _builtins.int
+    REASON_FIELD_NUMBER: _builtins.int
+    visit: _builtins.int
+    profile: _builtins.str
+    frames: _builtins.int
+    reason: _builtins.str
+    """why nothing was copied"""
+    @_builtins.property
+    def looks(self) -> _containers.RepeatedCompositeFieldContainer[Global___Look]: ...
+    @_builtins.property
+    def smoothed(self) -> _containers.RepeatedCompositeFieldContainer[Global___Smoothed]: ...
+    @_builtins.property
+    def segments(self) -> _containers.RepeatedCompositeFieldContainer[Global___Segment]: ...
+    @_builtins.property
+    def moves(self) -> _containers.RepeatedScalarFieldContainer[_builtins.int]:
+        """all that were copied"""
+
+    @_builtins.property
+    def confidences(self) -> _containers.RepeatedScalarFieldContainer[_builtins.float]:
+        """chi2 gap of each"""
+
+    @_builtins.property
+    def window(self) -> _containers.RepeatedScalarFieldContainer[_builtins.int]:
+        """those that were remembered"""
+
+    def __init__(
+        self,
+        *,
+        visit: _builtins.int = ...,
+        profile: _builtins.str = ...,
+        frames: _builtins.int = ...,
+        looks: _abc.Iterable[Global___Look] | None = ...,
+        smoothed: _abc.Iterable[Global___Smoothed] | None = ...,
+        segments: _abc.Iterable[Global___Segment] | None = ...,
+        moves: _abc.Iterable[_builtins.int] | None = ...,
+        confidences: _abc.Iterable[_builtins.float] | None = ...,
+        window: _abc.Iterable[_builtins.int] | None = ...,
+        reason: _builtins.str = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["confidences", b"confidences", "frames", b"frames", "looks", b"looks", "moves", b"moves", "profile", b"profile", "reason", b"reason", "segments", b"segments", "smoothed", b"smoothed", "visit", b"visit", "window", b"window"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___Observation: _TypeAlias = Observation  # noqa: Y015
+
+@_typing.final
+class CopyError(_message.Message):
+    """The copying error, which only the server can know: what the demonstrator really did meanwhile."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    VISIT_FIELD_NUMBER: _builtins.int
+    PATH_FIELD_NUMBER: _builtins.int
+    DEMONSTRATOR_FIELD_NUMBER: _builtins.int
+    TRUE_MOVES_FIELD_NUMBER: _builtins.int
+    COPIED_MOVES_FIELD_NUMBER: _builtins.int
+    EDIT_DISTANCE_FIELD_NUMBER: _builtins.int
+    visit: _builtins.int
+    path: _builtins.int
+    demonstrator: _builtins.str
+    edit_distance: _builtins.int
+    @_builtins.property
+    def true_moves(self) -> _containers.RepeatedScalarFieldContainer[_builtins.int]: ...
+    @_builtins.property
+    def copied_moves(self) -> _containers.RepeatedScalarFieldContainer[_builtins.int]: ...
+    def __init__(
+        self,
+        *,
+        visit: _builtins.int = ...,
+        path: _builtins.int = ...,
+        demonstrator: _builtins.str = ...,
+        true_moves: _abc.Iterable[_builtins.int] | None = ...,
+        copied_moves: _abc.Iterable[_builtins.int] | None = ...,
+        edit_distance: _builtins.int = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["copied_moves", b"copied_moves", "demonstrator", b"demonstrator", "edit_distance", b"edit_distance", "path", b"path", "true_moves", b"true_moves", "visit", b"visit"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___CopyError: _TypeAlias = CopyError  # noqa: Y015
 
 @_typing.final
 class Status(_message.Message):
@@ -482,6 +743,84 @@ class Carry(_message.Message):
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 
 Global___Carry: _TypeAlias = Carry  # noqa: Y015
+
+@_typing.final
+class View(_message.Message):
+    """Simulation: what stands before a robot's camera now; only the simulated camera reads it."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    @_typing.final
+    class Body(_message.Message):
+        DESCRIPTOR: _descriptor.Descriptor
+
+        X_M_FIELD_NUMBER: _builtins.int
+        Y_M_FIELD_NUMBER: _builtins.int
+        THETA_RAD_FIELD_NUMBER: _builtins.int
+        SKIRT_FIELD_NUMBER: _builtins.int
+        x_m: _builtins.float
+        y_m: _builtins.float
+        theta_rad: _builtins.float
+        skirt: _builtins.str
+        def __init__(
+            self,
+            *,
+            x_m: _builtins.float = ...,
+            y_m: _builtins.float = ...,
+            theta_rad: _builtins.float = ...,
+            skirt: _builtins.str = ...,
+        ) -> None: ...
+        _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+        def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+        _ClearFieldArgType: _TypeAlias = _typing.Literal["skirt", b"skirt", "theta_rad", b"theta_rad", "x_m", b"x_m", "y_m", b"y_m"]  # noqa: Y015
+        def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+        def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+    @_typing.final
+    class Walls(_message.Message):
+        DESCRIPTOR: _descriptor.Descriptor
+
+        WEST_M_FIELD_NUMBER: _builtins.int
+        SOUTH_M_FIELD_NUMBER: _builtins.int
+        EAST_M_FIELD_NUMBER: _builtins.int
+        NORTH_M_FIELD_NUMBER: _builtins.int
+        west_m: _builtins.float
+        south_m: _builtins.float
+        east_m: _builtins.float
+        north_m: _builtins.float
+        def __init__(
+            self,
+            *,
+            west_m: _builtins.float = ...,
+            south_m: _builtins.float = ...,
+            east_m: _builtins.float = ...,
+            north_m: _builtins.float = ...,
+        ) -> None: ...
+        _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+        def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+        _ClearFieldArgType: _TypeAlias = _typing.Literal["east_m", b"east_m", "north_m", b"north_m", "south_m", b"south_m", "west_m", b"west_m"]  # noqa: Y015
+        def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+        def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+    BODIES_FIELD_NUMBER: _builtins.int
+    WALLS_FIELD_NUMBER: _builtins.int
+    @_builtins.property
+    def bodies(self) -> _containers.RepeatedCompositeFieldContainer[Global___View.Body]: ...
+    @_builtins.property
+    def walls(self) -> _containers.RepeatedCompositeFieldContainer[Global___View.Walls]: ...
+    def __init__(
+        self,
+        *,
+        bodies: _abc.Iterable[Global___View.Body] | None = ...,
+        walls: _abc.Iterable[Global___View.Walls] | None = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["bodies", b"bodies", "walls", b"walls"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___View: _TypeAlias = View  # noqa: Y015
 
 @_typing.final
 class Item(_message.Message):

@@ -1,0 +1,126 @@
+"""Watching: the observer follows the demonstrator with its camera and notes every frame."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from dataclasses import dataclass
+
+from robot_agent.drivers.camera import Camera, Frame
+from robot_agent.imitation.observation import ObservedPosition, position_from_sighting
+from robot_agent.imitation.seeing import NotSeen, Seer, Sighting
+from swarm.clock import NS_PER_S
+from swarm.geometry import Pose, wrap_angle_rad
+
+FOLLOW_GAIN_PER_S = 2.0
+FOLLOW_DEAD_BAND_RAD = 0.07
+FASTEST_TURN_RAD_PER_S = 1.2
+MOST_REPEATED_FRAMES = 4
+"""Noise makes any two frames of a living camera differ."""
+MOST_MISSING_FRAMES = 5
+PUSHED_M = 0.03
+
+
+@dataclass(frozen=True, slots=True)
+class Looked:
+    """One frame: its hash, what the seer said of it, and the position that follows."""
+
+    t_ns: int
+    frame_hash: int
+    answer: Sighting | NotSeen
+    position: ObservedPosition | None
+
+
+class Watch:
+    """One observation, from its first frame to its last.
+
+    Call `step` at every tick with the own pose; it returns the turning speed that follows the
+    demonstrator. `failed` says why the observation had to be given up: nothing is learnt from it.
+    """
+
+    def __init__(
+        self, camera: Camera, seer: Seer, began_ns: int, duration_s: float, frames_per_s: float
+    ) -> None:
+        self.looks: list[Looked] = []
+        self.failed = ""
+        self._camera = camera
+        self._seer = seer
+        self._ends_ns = began_ns + round(duration_s * NS_PER_S)
+        self._period_ns = round(NS_PER_S / frames_per_s)
+        self._due_ns = began_ns
+        self._stood: Pose | None = None
+        self._towards_rad: float | None = None
+        self._looked_from_rad: float | None = None
+        self._repeated = 0
+        self._missing = 0
+        self.expected_frames = round(duration_s * frames_per_s)
+        seer.reset()
+
+    def ended(self, t_ns: int) -> bool:
+        """Whether the time is up or the observation was given up."""
+        return bool(self.failed) or t_ns >= self._ends_ns
+
+    def step(self, own_pose: Pose | None, t_ns: int) -> float:
+        """Take a frame if one is due; return the turning speed in rad/s, counter-clockwise."""
+        if own_pose is None:
+            return 0.0
+        self._stood = self._stood or own_pose
+        if self._stood.distance_m(own_pose) > PUSHED_M:
+            self.failed = "the observer was pushed"
+        elif t_ns >= self._due_ns:
+            self._due_ns += self._period_ns
+            self._take(self._camera.capture(t_ns), own_pose, t_ns)
+        return self._turn_rad_per_s(own_pose)
+
+    @property
+    def positions(self) -> list[ObservedPosition]:
+        """Where the demonstrator was seen, in order of time."""
+        return [looked.position for looked in self.looks if looked.position]
+
+    def commonest_reason(self) -> str:
+        """Why the demonstrator was most often not seen; empty if it always was."""
+        counts = Counter(looked.answer.reason for looked in self.looks if isinstance(looked.answer, NotSeen))
+        return counts.most_common(1)[0][0].value if counts else ""
+
+    def _take(self, frame: Frame | None, own_pose: Pose, t_ns: int) -> None:
+        if frame is None:
+            self._missing += 1
+            if self._missing > MOST_MISSING_FRAMES:
+                self.failed = f"the camera stalled: no frame for {self._missing} periods"
+            return
+        self._missing = 0
+        frame_hash = int.from_bytes(hashlib.blake2b(frame.data, digest_size=8).digest(), "little")
+        self._repeated = self._repeated + 1 if self.looks and self.looks[-1].frame_hash == frame_hash else 0
+        if self._repeated >= MOST_REPEATED_FRAMES:
+            self.failed = f"the camera is frozen: {self._repeated + 1} equal frames"
+            return
+        self._look(frame, frame_hash, own_pose, t_ns)
+
+    def _look(self, frame: Frame, frame_hash: int, own_pose: Pose, t_ns: int) -> None:
+        from_rad, self._looked_from_rad = self._looked_from_rad, own_pose.theta_rad
+        turned_rad = None if from_rad is None else wrap_angle_rad(own_pose.theta_rad - from_rad)
+        answer = self._seer.look(frame, turned_rad)
+        position = None
+        if isinstance(answer, Sighting):
+            model = self._seer.model
+            bearing_rad = answer.bearing_rad + model.yaw_rad
+            self._towards_rad = wrap_angle_rad(own_pose.theta_rad + bearing_rad)
+            position = position_from_sighting(
+                own_pose,
+                model.forward_m,
+                answer.range_m,
+                bearing_rad,
+                answer.range_sd_m,
+                answer.bearing_sd_rad,
+                t_ns,
+            )
+        self.looks.append(Looked(t_ns, frame_hash, answer, position))
+
+    def _turn_rad_per_s(self, own_pose: Pose) -> float:
+        if self._towards_rad is None or self.failed:
+            return 0.0
+        error_rad = wrap_angle_rad(self._towards_rad - own_pose.theta_rad)
+        if abs(error_rad) < FOLLOW_DEAD_BAND_RAD:
+            return 0.0
+        wanted = FOLLOW_GAIN_PER_S * error_rad
+        return max(-FASTEST_TURN_RAD_PER_S, min(FASTEST_TURN_RAD_PER_S, wanted))

@@ -1,0 +1,67 @@
+"""The copying error: what a robot copied against what the demonstrator really did meanwhile.
+
+Only the server can know it; no robot ever hears of it.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+from server.hand import Publish
+from swarm import keys
+from swarm.clock import NS_PER_S
+from swarm.learning.edit_distance import edit_distance
+from swarm.messages import swarm_pb2 as pb
+
+MOVES_KEPT = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class RealMove:
+    """A move that was driven: when its middle was, and which it is."""
+
+    middle_t_ns: int
+    move: int
+
+
+class CopyErrors:
+    """Keeps the demonstrators' moves and judges every observation."""
+
+    def __init__(self, watched_by: dict[str, str], publish: Publish) -> None:
+        self._watched_by = watched_by
+        self._publish = publish
+        self._real = {robot: deque[RealMove](maxlen=MOVES_KEPT) for robot in watched_by.values()}
+        self._observations: dict[str, pb.Observation] = {}
+
+    def moved(self, robot: str, move: pb.Move, arrived_t_ns: int) -> None:
+        """A robot made a move; one into a wall is not driven, so nobody can see it."""
+        if robot in self._real and not move.blocked:
+            middle_t_ns = arrived_t_ns - round(move.duration_s * NS_PER_S / 2)
+            self._real[robot].append(RealMove(middle_t_ns, move.action))
+
+    def observed(self, robot: str, observation: pb.Observation) -> None:
+        """A robot tells how it copied; the path's number comes when the visit is done."""
+        self._observations[robot] = observation
+
+    def visit_done(self, robot: str, visit: pb.Visit) -> None:
+        """Judge the visit's observation, if it copied anything."""
+        observation = self._observations.pop(robot, None)
+        if observation is None or not observation.segments or observation.visit != visit.visit:
+            return
+        demonstrator = self._watched_by[robot]
+        began_t_ns = observation.segments[0].began_t_ns
+        ended_t_ns = observation.segments[-1].ended_t_ns
+        real = [
+            entry.move for entry in self._real[demonstrator] if began_t_ns <= entry.middle_t_ns <= ended_t_ns
+        ]
+        copied = list(observation.moves)
+        message = pb.CopyError(
+            visit=visit.visit,
+            path=visit.path,
+            demonstrator=demonstrator,
+            true_moves=real,
+            copied_moves=copied,
+            edit_distance=edit_distance(copied, real),
+        )
+        self._publish(keys.COPY_ERROR, message, robot)
