@@ -22,7 +22,7 @@ from swarm.gridworld.condition import (
     Teacher,
 )
 from swarm.gridworld.engine import Simulation, simulate
-from swarm.gridworld.kernels import Agent
+from swarm.gridworld.state import Agent
 from swarm.learning.memory import Approach
 from swarm.learning.paths import ObservedPath
 from tests.plain_gridworld import PlainAgent, PlainSimulation

@@ -17,8 +17,8 @@ from swarm.gridworld.condition import (
     Experienced,
     GivenPaths,
 )
-from swarm.gridworld.kernels import Learner, Limits
 from swarm.gridworld.learners import learners, world
+from swarm.gridworld.state import Learner, Limits
 from swarm.learning.q_table import GAMMA
 
 UNLIMITED = 2**62

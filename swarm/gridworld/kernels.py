@@ -8,7 +8,7 @@ compiled functions stand in this one file, since numba's cache notices changes o
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numba import njit
@@ -16,6 +16,19 @@ from numpy.typing import NDArray
 
 from swarm.geometry import MOVES
 from swarm.gridworld.splitmix import FIRST, GOLDEN, SECOND
+from swarm.gridworld.state import (
+    COMPLETION,
+    FIXED,
+    NO_REPLAY,
+    WATCHES_EXPERT,
+    WATCHES_NOBODY,
+    Agent,
+    BestPath,
+    Learner,
+    Limits,
+    Rules,
+    World,
+)
 
 Whole = int | np.int64 | Any
 Real = float | Any
@@ -31,10 +44,6 @@ MEMBER = np.array([members + [0] * (MOVES - len(members)) for members in SETS], 
 """The k-th action of a set, at 8 x set + k (2048,)."""
 FIRST_MEMBER = MEMBER[::MOVES].copy()
 """The first action of a set (256,)."""
-
-NO_REPLAY = -1
-FIXED, COMPLETION, AVERAGE_Q = 0, 1, 2
-WATCHES_NOBODY, WATCHES_EXPERT, WATCHES_OTHER = 0, 1, 2
 
 # Places, actions and sets of actions are unsigned: numba would look whether a signed index is negative.
 _U = np.uint64
@@ -54,108 +63,6 @@ def _inlined(function: Function) -> Function:
     """Compile into whatever calls it."""
     compiled: Function = njit(forceinline=True, **_OPTIONS)(function)
     return compiled
-
-
-class World(NamedTuple):
-    """The arena and the two ends of a run."""
-
-    ways: NDArray[np.uint8]
-    """The set of moves that lead out of each cell (states,)"""
-    offsets: NDArray[np.uint64]
-    """What each move adds to the number of the cell (moves,)"""
-    start: np.uint64
-    goal: np.uint64
-    expert_path: NDArray[np.uint8]
-    """(moves of the expert,)"""
-
-
-class Rules(NamedTuple):
-    """What does not change during a run."""
-
-    alpha: float
-    gamma: float
-    explores_below: np.uint64
-    """Epsilon in units of 2^-53, rounded up: an agent explores if 53 random bits are below it"""
-    beta: float
-    approach: int
-    watches: int
-    every: int
-    moves: int
-    accesses: bool
-    """Whether a path is the other agent's policy, of `moves` moves"""
-    seen: bool
-    """Whether another watches, so that the agent's moves have to be kept"""
-
-
-class Limits(NamedTuple):
-    """When a run ends, how often the best path is evaluated, and whether a second agent takes part."""
-
-    steps: int
-    reachings: int
-    every: int
-    pair: bool
-
-
-class Agent(NamedTuple):
-    """One agent: its table, its memory of paths, and the moves that others may have seen of it.
-
-    Single numbers are arrays of one, so that the kernels can change them.
-    """
-
-    q: NDArray[np.float64]
-    """(states x moves,)"""
-    best: NDArray[np.float64]
-    """max_a Q(s, a) (states,)"""
-    greedy: NDArray[np.uint8]
-    """The set of actions that have that value (states,)"""
-    place: NDArray[np.uint64]
-    arrivals: NDArray[np.int64]
-    stream: NDArray[np.uint64]
-    watching: NDArray[np.uint64]
-    """The stream of what the agent happens to see."""
-    paths: NDArray[np.uint8]
-    """(capacity, moves)"""
-    lengths: NDArray[np.int64]
-    replicated: NDArray[np.int64]
-    counted: NDArray[np.int64]
-    """n_completed or n_Q+ (capacity,)"""
-    ratios: NDArray[np.float64]
-    """R_i of eq. 4 (capacity,)"""
-    totals: NDArray[np.float64]
-    """Their running sums (capacity,)"""
-    remembered: NDArray[np.int64]
-    replayed: NDArray[np.int64]
-    """The memory's place of the path being replayed, or NO_REPLAY"""
-    place_in_path: NDArray[np.int64]
-    change: NDArray[np.float64]
-    """The sum of the replay's changes of Q values"""
-    trail: NDArray[np.uint8]
-    """The last moves of this run, in a ring (moves,)"""
-    trail_moves: NDArray[np.int64]
-    """Moves of this run so far"""
-    shown: NDArray[np.uint8]
-    """The last moves of the run before (moves,)"""
-    shown_moves: NDArray[np.int64]
-
-
-class BestPath(NamedTuple):
-    """The last greedy path found without a random choice, and the sets that it rests on."""
-
-    route: NDArray[np.uint16]
-    sets: NDArray[np.uint8]
-    length: NDArray[np.int64]
-    """0 if the last path met a tie"""
-    stream: NDArray[np.uint64]
-    lengths: NDArray[np.int16]
-    """What was found so far (points,)"""
-
-
-class Learner(NamedTuple):
-    """An agent, how it learns, and what was found of its best path."""
-
-    agent: Agent
-    rules: Rules
-    found: BestPath
 
 
 @_inlined

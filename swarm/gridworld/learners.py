@@ -1,4 +1,4 @@
-"""The state of a run's agents as arrays, made ready for the kernels."""
+"""The state of a run's agents as arrays, made ready for the state."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from swarm.geometry import MOVES
-from swarm.gridworld import kernels
+from swarm.gridworld import state
 from swarm.gridworld.arena import Arena, offsets, ways
 from swarm.gridworld.condition import (
     AccessEachOther,
@@ -20,15 +20,15 @@ from swarm.gridworld.condition import (
     NoTeacher,
     Teacher,
 )
-from swarm.gridworld.kernels import Agent, BestPath, Learner, Rules, World
 from swarm.gridworld.splitmix import stream_word
+from swarm.gridworld.state import Agent, BestPath, Learner, Rules, World
 from swarm.learning.memory import Approach
 from swarm.learning.q_table import ALPHA, GAMMA
 
 APPROACHES = {
-    Approach.FIXED: kernels.FIXED,
-    Approach.COMPLETION: kernels.COMPLETION,
-    Approach.AVERAGE_Q: kernels.AVERAGE_Q,
+    Approach.FIXED: state.FIXED,
+    Approach.COMPLETION: state.COMPLETION,
+    Approach.AVERAGE_Q: state.AVERAGE_Q,
 }
 
 
@@ -57,7 +57,7 @@ def _rules(condition: Condition) -> tuple[Rules, Rules]:
         explores_below=np.uint64(math.ceil(condition.epsilon * 2**53)),
         beta=condition.beta,
         approach=APPROACHES[condition.approach],
-        watches=kernels.WATCHES_NOBODY,
+        watches=state.WATCHES_NOBODY,
         every=teacher.every if isinstance(teacher, Expert | Experienced | EachOther) else 1,
         moves=_moves(teacher),
         accesses=isinstance(teacher, AccessExpert | AccessEachOther),
@@ -65,11 +65,11 @@ def _rules(condition: Condition) -> tuple[Rules, Rules]:
     )
     match teacher:
         case Expert():
-            return rules._replace(watches=kernels.WATCHES_EXPERT), rules
+            return rules._replace(watches=state.WATCHES_EXPERT), rules
         case Experienced():
-            return rules._replace(watches=kernels.WATCHES_OTHER), rules._replace(seen=True)
+            return rules._replace(watches=state.WATCHES_OTHER), rules._replace(seen=True)
         case EachOther():
-            both = rules._replace(watches=kernels.WATCHES_OTHER, seen=True)
+            both = rules._replace(watches=state.WATCHES_OTHER, seen=True)
             return both, both
     return rules, rules
 
@@ -90,7 +90,7 @@ def _agent(condition: Condition, seed: int, run: int, name: str) -> Agent:
     return Agent(
         q=np.zeros(states * MOVES),
         best=np.zeros(states),
-        greedy=np.full(states, kernels.ALL_MOVES, np.uint8),
+        greedy=np.full(states, (1 << MOVES) - 1, np.uint8),
         place=np.full(1, condition.arena.grid.start, np.uint64),
         arrivals=np.zeros(1, np.int64),
         stream=np.array([stream_word(seed, run, name, "choices")], np.uint64),
@@ -102,7 +102,7 @@ def _agent(condition: Condition, seed: int, run: int, name: str) -> Agent:
         ratios=np.zeros(capacity),
         totals=np.zeros(capacity),
         remembered=np.zeros(1, np.int64),
-        replayed=np.full(1, kernels.NO_REPLAY, np.int64),
+        replayed=np.full(1, state.NO_REPLAY, np.int64),
         place_in_path=np.zeros(1, np.int64),
         change=np.zeros(1),
         trail=np.zeros(moves, np.uint8),
