@@ -70,7 +70,7 @@ class Conductor:
             self._note_move(move, batch.t_ns)
         for best in self._best_paths.take():
             self.best_path[best.robot] = best.message.length
-        self._conduct_visits()
+        self._conduct_visits(batch.t_ns)
         self.bad_messages = sum(feed.bad for feed in self._feeds.values())
         self._ending = all(
             self.moves[robot.id] >= self._experiment.run.moves for robot in self._experiment.learners
@@ -100,7 +100,7 @@ class Conductor:
         if move.next_state == self._goal:
             self._visits.track_ended(robot, move.track)
 
-    def _conduct_visits(self) -> None:
+    def _conduct_visits(self, t_ns: int) -> None:
         for path in self._paths.take():
             if path.message.visit:
                 self._visits.path_remembered(path.robot)
@@ -109,7 +109,8 @@ class Conductor:
         for word in self._visit_words.take():
             self._visits.heard(word.robot, word.message)
             if word.message.phase == pb.Visit.DONE:
-                self._copy_errors.visit_done(word.robot, word.message)
+                self._copy_errors.visit_done(word.robot, word.message, t_ns)
+        self._copy_errors.step(t_ns)
         self._visits.order_due()
         self._world.step(self._truths.take(), self._visits.watching)
 

@@ -15,6 +15,7 @@ from swarm.learning.edit_distance import edit_distance
 from swarm.messages import swarm_pb2 as pb
 
 MOVES_KEPT = 1000
+LAST_MOVE_REPORTED_NS = 5 * NS_PER_S
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +34,7 @@ class CopyErrors:
         self._publish = publish
         self._real = {robot: deque[RealMove](maxlen=MOVES_KEPT) for robot in watched_by.values()}
         self._observations: dict[str, pb.Observation] = {}
+        self._to_judge: deque[tuple[int, str, pb.Visit, pb.Observation]] = deque()
 
     def moved(self, robot: str, move: pb.Move, arrived_t_ns: int) -> None:
         """A robot made a move; one into a wall is not driven, so nobody can see it."""
@@ -44,11 +46,19 @@ class CopyErrors:
         """A robot tells how it copied; the path's number comes when the visit is done."""
         self._observations[robot] = observation
 
-    def visit_done(self, robot: str, visit: pb.Visit) -> None:
-        """Judge the visit's observation, if it copied anything."""
+    def visit_done(self, robot: str, visit: pb.Visit, t_ns: int) -> None:
+        """Have the visit's observation judged, if it copied anything, once its last move is reported."""
         observation = self._observations.pop(robot, None)
-        if observation is None or not observation.segments or observation.visit != visit.visit:
-            return
+        if observation and observation.segments and observation.visit == visit.visit:
+            self._to_judge.append((t_ns + LAST_MOVE_REPORTED_NS, robot, visit, observation))
+
+    def step(self, t_ns: int) -> None:
+        """Judge what is due."""
+        while self._to_judge and self._to_judge[0][0] <= t_ns:
+            _, robot, visit, observation = self._to_judge.popleft()
+            self._judge(robot, visit, observation)
+
+    def _judge(self, robot: str, visit: pb.Visit, observation: pb.Observation) -> None:
         demonstrator = self._watched_by[robot]
         began_t_ns = observation.segments[0].began_t_ns
         ended_t_ns = observation.segments[-1].ended_t_ns
