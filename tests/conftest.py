@@ -1,0 +1,32 @@
+"""Fixtures that several test files share: a small run is made once a session."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.swarm_runs import experiment_text, run_server, write_experiment
+
+
+@dataclass(frozen=True)
+class SmallRun:
+    """A run of three robots with 30 moves each, in lockstep and one process a robot."""
+
+    experiment: Path
+    directory: Path
+    result: dict[str, Any]
+
+    @property
+    def log(self) -> Path:
+        return self.directory / "trial-000.mcap"
+
+
+@pytest.fixture(scope="session")
+def small_run(tmp_path_factory: pytest.TempPathFactory) -> SmallRun:
+    """The run that tests read; none may change it."""
+    directory = tmp_path_factory.mktemp("small")
+    experiment = write_experiment(directory, experiment_text())
+    return SmallRun(experiment, directory / "run", run_server(experiment, directory / "run"))
