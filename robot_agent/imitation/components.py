@@ -40,14 +40,17 @@ class Blob:
 
 
 def trimmed(blob: Blob, mask: NDArray[np.uint8]) -> Blob:
-    """The blob less what sticks out at its sides: columns that hold much more or less of it than most do.
+    """The blob less what sticks out at its sides: columns that hold much more or less of it than most do,
+    or that hold it higher or lower.
 
     A thing of the same colour that touches the skirt is lower or higher than the skirt, or joined to it by
     a few pixels. The two columns at a side that the blur makes ragged stay.
     """
     columns = mask[blob.top : blob.bottom, blob.left : blob.right]
     counts = columns.sum(axis=0, dtype=np.int32)
+    middles = np.arange(blob.height) @ columns / np.maximum(counts, 1)
     usual = np.abs(counts - np.median(counts)) <= 1.5 + USUAL_PART * blob.height
+    usual &= np.abs(middles - np.median(middles)) <= 1.0 + USUAL_PART / 2 * blob.height
     first, last = _longest_run(usual)
     first, last = first if first > RAGGED_PX else 0, last if blob.width - last > RAGGED_PX else blob.width
     if last - first in (blob.width, 0) or first > last:

@@ -37,6 +37,7 @@ BORDER_PX = 5
 CLEARLY_NEARER = 0.5
 HEIGHT_SD_PX = 1.5
 MIN_WIDTH_PX = 4
+LIKE_PART = 0.15
 DARK_LIGHT = 0.03
 """Of the sensor's full scale."""
 
@@ -104,8 +105,8 @@ class Profile:
 
 
 PROFILES = {
-    "best": Profile(320, 240, sub_pixel=True, edge_sd_px=0.08, tolerance_px=1.8),
-    "paper": Profile(160, 120, sub_pixel=False, edge_sd_px=0.5, tolerance_px=3.5, shrunk_px=1.45),
+    "best": Profile(320, 240, sub_pixel=True, edge_sd_px=0.08, tolerance_px=1.7),
+    "paper": Profile(160, 120, sub_pixel=False, edge_sd_px=0.5, tolerance_px=2.6, shrunk_px=1.45),
 }
 
 
@@ -173,9 +174,17 @@ class Seer:
         left, right = None if left_cut else left, None if right_cut else right
         if left is not None and right is not None:
             return self._from_both_edges(t_ns, blob, left, right)
+        if not (left_cut or right_cut) and self._touches_its_like(words, blob):
+            return Reason.HIDDEN
         if (left is None and right is None) or not fits_part_of_skirt(blob, self.model, self._tolerance_px):
             return Reason.CUT_OFF if left_cut or right_cut else Reason.HIDDEN
         return self._from_one_edge(t_ns, blob, left, right)
+
+    def _touches_its_like(self, words: Words, blob: Blob) -> bool:
+        """Whether something of the skirt's colour is right beside a patch, which may be part of it."""
+        rows = slice(blob.top, blob.bottom)
+        beside = (words[rows, blob.left - 4 : blob.left - 1], words[rows, blob.right + 1 : blob.right + 4])
+        return any(self._is_skirt[columns].mean() > LIKE_PART for columns in beside)
 
     def _edges(self, words: Words, blob: Blob) -> tuple[float | None, float | None]:
         if not self.profile.sub_pixel:

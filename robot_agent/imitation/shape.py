@@ -12,7 +12,9 @@ from robot_agent.drivers.camera_model import CameraModel
 from robot_agent.imitation.components import Blob
 from robot_agent.imitation.cylinder import SKIRT_BOTTOM_M, SKIRT_RADIUS_M, SKIRT_TOP_M
 
-TOLERANCE = 0.12
+TOLERANCE = 0.05
+GROWN_PX = 0.7
+"""How much higher than the skirt its patch is: the body and the shadow do not bound it as white wall does."""
 TILT_RAD = 0.02
 """How far the robot may be tilted: it moves the whole image up or down."""
 SMALLEST_PART = 1 / 3
@@ -25,7 +27,8 @@ def fits_skirt(
     """Whether the patch's height is right for the range that its two sides gave."""
     depth_m = max(range_m - SKIRT_RADIUS_M, 0.01) * math.cos(bearing_rad)
     height_px = model.focal_px * (SKIRT_TOP_M - SKIRT_BOTTOM_M) / depth_m
-    return _close(blob.height, height_px, tolerance_px) and _fits_above(blob, model, depth_m, tolerance_px)
+    seen_px = blob.height - GROWN_PX
+    return _close(seen_px, height_px, tolerance_px) and _fits_above(blob, model, depth_m, tolerance_px)
 
 
 def fits_part_of_skirt(blob: Blob, model: CameraModel, tolerance_px: float) -> bool:
@@ -38,7 +41,7 @@ def fits_part_of_skirt(blob: Blob, model: CameraModel, tolerance_px: float) -> b
 
 def depth_from_height_m(blob: Blob, model: CameraModel) -> float:
     """How far away, along the camera's axis, a skirt of the patch's height is."""
-    return model.focal_px * (SKIRT_TOP_M - SKIRT_BOTTOM_M) / blob.height
+    return model.focal_px * (SKIRT_TOP_M - SKIRT_BOTTOM_M) / (blob.height - GROWN_PX)
 
 
 def _fits_above(blob: Blob, model: CameraModel, depth_m: float, tolerance_px: float) -> bool:

@@ -211,7 +211,7 @@ def is_wrong(look: Look) -> bool:
 
 
 def cost_ms(profile: str, skirt: str, frames: int) -> float:
-    """The shortest thread-CPU time of a look, over many frames (other processes disturb the rest)."""
+    """Processor time of a look: the shortest for each of some frames (other processes disturb the rest)."""
     camera, seer = make_pair(profile, "realistic", skirt, 1)
     rng = np.random.default_rng(2)
     images: list[Frame] = []
