@@ -48,8 +48,8 @@ class Analysis:
 
 def analyze(request: Request, show: Callable[[int], object] = lambda _: None) -> Analysis:
     """Read the logs, write tables, curves, figure and report; `show` is told of messages read."""
-    inputs = find_inputs(request.runs)
     out = request.out or default_out(request.runs)
+    inputs = find_inputs(request.runs)
     directory = AnalysisDirectory.open(out, inputs)
     reading = read_logs(inputs.logs, directory.tables, request.sampled, show)
     curves = run_curves(pl.read_parquet(reading.tables["best_paths"]))
