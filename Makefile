@@ -3,9 +3,16 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
+DEMO ?= runs/demo-$(shell date +%Y%m%d-%H%M%S)
+
 .PHONY: setup demo test test-all check messages clean
 
 setup: $(READY)
+
+# A simulated swarm from end to end: a run directory with the log, the learning curve, a summary.
+demo: setup
+	$(BIN)/swarm simulate deploy/sim/demo.toml --out $(DEMO)
+	$(BIN)/swarm analyze $(DEMO)
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -14,6 +21,7 @@ $(READY): pyproject.toml constraints.txt
 
 check: setup
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
 test: setup check

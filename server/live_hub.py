@@ -11,6 +11,7 @@ from google.protobuf.message import Message
 from server.batch import Batch, LogItem
 from swarm.bus import Bus, Sample, Sender
 from swarm.clock import WallClock
+from swarm.experiment import Experiment
 from swarm.keys import Delivery, Topic
 from swarm.link import Sequencer
 from swarm.messages.header import Header
@@ -28,17 +29,15 @@ class LiveHub:
         self,
         bus: Bus,
         clock: WallClock,
-        period_s: float,
-        epoch: int,
-        robots: list[str],
+        experiment: Experiment,
         check: Callable[[], None],
         warn: Callable[[str], None],
     ) -> None:
         self._bus = bus
         self._clock = clock
-        self._ticks: Iterator[int] = clock.ticks(period_s)
-        self._epoch = epoch
-        self._robots = robots
+        self._ticks: Iterator[int] = clock.ticks(experiment.simulation.tick_s)
+        self._epoch = time.time_ns()
+        self._robots = [robot.id for robot in experiment.robot]
         self._check = check
         self._warn = warn
         self._inboxes = [bus.inbox(key, Delivery.EVERY) for key in EVERYTHING]

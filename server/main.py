@@ -5,14 +5,17 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from rich.console import Console
 
 from server.progress import RunProgress
+from server.run import Run
 from server.run_directory import RunDirectory
-from server.simulation import Simulation
+from server.stage import laboratory, simulated
 from server.summary import print_summary
+from swarm.bus import BusSettings
 from swarm.cli.output import print_json
 from swarm.experiment import Experiment
 from swarm.guard import guarded
@@ -25,15 +28,17 @@ def main() -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Simulate the experiment's swarm and conduct its trials."""
+    """Conduct the experiment's trials on simulated robots or, with --listen, on a laboratory's."""
     leave_on_signals()
     experiment = Experiment.load(arguments.experiment)
     experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
     directory = RunDirectory.create(arguments.out, experiment.run.name)
-    console = Console(stderr=True)
-    with RunProgress(experiment, console) as progress:
-        simulation = Simulation(experiment, arguments.experiment, directory, arguments.speed, progress)
-        summary = simulation.run()
+    with RunProgress(experiment, Console(stderr=True)) as progress:
+        set_stage = simulated(experiment, arguments.speed, progress.warn)
+        if arguments.listen:
+            settings = BusSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
+            set_stage = laboratory(experiment, settings, progress.warn)
+        summary = Run(experiment, arguments.experiment, directory, set_stage, progress).run()
     if arguments.json:
         print_json(summary)
     else:
@@ -41,25 +46,39 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _parser() -> OneLineParser:
-    parser = OneLineParser(prog="swarm-server", description="Runs a simulated swarm and records everything.")
+    parser = OneLineParser(
+        prog="swarm-server",
+        description="Runs an experiment and records everything: on simulated robots, whose processes it "
+        "starts, or with --listen on the robots of a laboratory.",
+    )
     parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="what is run")
     parser.add_argument("--out", type=Path, metavar="DIR", help="a new directory (runs/NAME-001 and so on)")
     parser.add_argument("--seed", type=_at_least(0), metavar="N", help="in place of the experiment's")
     parser.add_argument("--moves", type=_at_least(1), metavar="N", help="in place of the experiment's")
-    parser.add_argument(
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    simulation = parser.add_argument_group("simulation")
+    simulation.add_argument(
         "--processes", type=_at_least(0), metavar="N", help="for the robots; 0 gives each its own"
     )
-    parser.add_argument(
+    simulation.add_argument(
         "--speed",
         type=_speed,
         metavar="max|X",
         help="max: lockstep, as fast as possible, repeatable (the default); X: so many times as fast as life",
     )
-    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    real = parser.add_argument_group("laboratory")
+    real.add_argument(
+        "--listen",
+        metavar="tcp/HOST:PORT",
+        help="wait here for the robots' agents and the tracker bridge, for instance tcp/0.0.0.0:7447",
+    )
+    real.add_argument(
+        "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"
+    )
     return parser
 
 
-def _at_least(low: int):  # type: ignore[no-untyped-def]
+def _at_least(low: int) -> Callable[[str], int]:
     def whole_number(text: str) -> int:
         try:
             value = int(text)

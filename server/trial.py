@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from server.conductor import Conductor
 from server.health import Health
-from server.hub import Hub
 from server.recorder import Recorder
+from server.stage import Stage
 from swarm.messages import swarm_pb2 as pb
 
 BATCHES_AFTER_THE_END = 3
@@ -32,18 +32,17 @@ class Trial:
 
     def __init__(
         self,
-        hub: Hub,
+        stage: Stage,
         conductor: Conductor,
         recorder: Recorder,
         health: Health,
-        batches_between_flushes: int,
         show: Callable[[Conductor, float], None],
     ) -> None:
-        self._hub = hub
+        self._hub = stage.hub
+        self._stage = stage
         self._conductor = conductor
         self._recorder = recorder
         self._health = health
-        self._batches_between_flushes = batches_between_flushes
         self._show = show
         self._batches = 0
         self._began_ns: int | None = None
@@ -87,8 +86,9 @@ class Trial:
         self._began_ns = batch.t_ns if self._began_ns is None else self._began_ns
         self._t_ns = batch.t_ns
         self._batches += 1
-        if self._batches % self._batches_between_flushes == 0:
-            self._conductor.check_progress(batch.t_ns)
+        if self._batches % self._stage.batches_between_flushes == 0:
+            if not self._stage.waits_for_people:
+                self._conductor.check_progress(batch.t_ns)
             self._recorder.flush()
             self._show(self._conductor, self._t_ns / 1e9)
 

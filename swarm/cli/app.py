@@ -7,8 +7,10 @@ import sys
 import typer
 
 from swarm.cli.analyze import analyze_command
+from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
 from swarm.cli.reproduce import reproduce_command
+from swarm.cli.simulate import simulate_command
 from swarm.errors import UserError
 
 app = typer.Typer(
@@ -25,9 +27,11 @@ def _root() -> None:
     """Keeps the verbs as sub-commands while there is only one."""
 
 
+app.command("simulate")(simulate_command)
 app.command("reproduce")(reproduce_command)
 app.command("claims")(claims_command)
 app.command("analyze")(analyze_command)
+app.command("check")(check_command)
 
 
 def run() -> None:
@@ -35,7 +39,8 @@ def run() -> None:
     try:
         code = app(standalone_mode=False)
     except typer.TyperException as error:
-        raise UserError(f"{' '.join(str(error).split())} (see `swarm --help`)") from error
+        what = " ".join(str(error).split()) or "a verb is missing"
+        raise UserError(f"{what} (see `swarm --help`)") from error
     except typer.Abort as error:
         raise KeyboardInterrupt from error
     sys.exit(code or 0)

@@ -1,0 +1,98 @@
+"""What a trial plays on: simulated robots in processes of ours, or the robots of a laboratory."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from server.hand import Hand, Operator, SimulatedHand
+from server.hub import Hub
+from server.live_hub import LiveHub
+from server.lockstep_hub import LockstepHub
+from server.run_table import Pace, run_table
+from server.supervisor import Supervisor
+from swarm.bus import Bus, BusSettings
+from swarm.clock import scaled_clock, unix_clock
+from swarm.experiment import Experiment
+from swarm.presence import Presence, claim
+
+LOCKSTEP_BATCHES_BETWEEN_FLUSHES = 1000
+LIVE_FLUSH_S = 0.5
+"""Real seconds of messages that a killed server may lose."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Where the messages come together, who carries robots, and how often the log is flushed."""
+
+    hub: Hub
+    hand: Hand
+    batches_between_flushes: int
+    waits_for_people: bool = False
+
+
+SetStage = Callable[[int, Path, Path], AbstractContextManager[Stage]]
+"""Makes the stage of a trial from its number, the experiment's file, and a directory for output."""
+
+Warn = Callable[[str], None]
+
+
+def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetStage:
+    """Processes on this machine, in lockstep (`speed` None) or so many times as fast as life."""
+
+    @contextmanager
+    def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:
+        endpoint = f"tcp/127.0.0.1:{_free_port()}"
+        pace = Pace(speed is None, speed or 1.0, time.monotonic_ns())
+        specs = run_table(experiment, file, endpoint, trial, pace)
+        with _bus(BusSettings(endpoint, hub=True)) as bus, Supervisor(specs, output) as supervisor:
+            if pace.lockstep:
+                processes = [spec.name for spec in specs]
+                tick_s = experiment.simulation.tick_s
+                hub: Hub = LockstepHub(bus, processes, tick_s, supervisor.check, warn)
+                flush_every = LOCKSTEP_BATCHES_BETWEEN_FLUSHES
+            else:
+                clock = scaled_clock(pace.started_ns, pace.speed)
+                hub = LiveHub(bus, clock, experiment, supervisor.check, warn)
+                flush_every = _live_flush(experiment, pace.speed)
+            yield Stage(hub, SimulatedHand(hub.publish), flush_every)
+
+    return stage
+
+
+def laboratory(experiment: Experiment, settings: BusSettings, warn: Warn) -> SetStage:
+    """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
+
+    @contextmanager
+    def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:  # noqa: ARG001
+        with _bus(settings) as bus:
+            hub = LiveHub(bus, unix_clock(), experiment, _nothing_to_check, warn)
+            yield Stage(hub, Operator(hub.publish, warn), _live_flush(experiment, 1.0), waits_for_people=True)
+
+    return stage
+
+
+@contextmanager
+def _bus(settings: BusSettings) -> Iterator[Bus]:
+    with Bus(settings) as bus:
+        claim(bus, Presence("server", "server", socket.gethostname(), time.time_ns()))
+        yield bus
+
+
+def _live_flush(experiment: Experiment, speed: float) -> int:
+    return max(1, round(LIVE_FLUSH_S * speed / experiment.simulation.tick_s))
+
+
+def _nothing_to_check() -> None:
+    """The laboratory's processes are not ours: who is missing shows by presence and health."""
+
+
+def _free_port() -> int:
+    """A port that nobody listens on now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
