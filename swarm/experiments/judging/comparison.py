@@ -68,9 +68,12 @@ def effect_between(better: Curves, worse: Curves, start: float, end: float) -> E
         return None
 
 
-def longest(windows: tuple[Window, ...]) -> Window:
-    """The window that a claim of one window is compared with."""
-    return max(windows, key=lambda window: window.duration)
+def span(windows: tuple[Window, ...]) -> Window:
+    """From the first window's start to the last one's end: what "from" and "until" are compared with.
+
+    One run that has not arrived yet can hide a difference that all others show, so gaps count for nothing.
+    """
+    return Window(windows[0].start, windows[-1].end)
 
 
 def _tested(name: str, p: FloatArray, direction: FloatArray, times: FloatArray, in_time: bool) -> Tested:

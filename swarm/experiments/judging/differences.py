@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from swarm.analysis.windows import Window
 from swarm.experiments.claim import Better, NoDifference
-from swarm.experiments.judging.comparison import LEVEL, Comparison, compare, effect_between, longest
+from swarm.experiments.judging.comparison import LEVEL, Comparison, compare, effect_between, span
 from swarm.experiments.judging.evidence import Evidence
 from swarm.experiments.judging.finding import Finding, Tested, Verdict
 from swarm.experiments.judging.wording import compared, in_steps
@@ -40,7 +40,7 @@ def _ruling(check: Better, found: Comparison, claimed: Window, last_step: float,
         return _not_found(found, enough_runs)
     if not any(_overlap(window, claimed) for window in found.honest.windows):
         verdict = Verdict.IN_PART if enough_runs else Verdict.UNDECIDED
-        return verdict, "the paper's test finds it, the honest test does not confirm it"
+        return verdict, "the paper's test finds a gain, the honest test none at the time claimed"
     missed = _missed(check, found.paper)
     if missed:
         return (Verdict.IN_PART if enough_runs else Verdict.UNDECIDED), f"better, but {missed}"
@@ -67,7 +67,7 @@ def _same_ruling(found: Comparison, enough_runs: bool) -> Ruling:
 
 def _missed(check: Better, paper: Tested) -> str:
     """Which of the claimed times the paper's own test does not reproduce; empty if none."""
-    window = longest(paper.windows)
+    window = span(paper.windows)
     times = (("from", check.start_step, window.start), ("until", check.end_step, window.end))
     return " and ".join(
         f"{word} {in_steps(there)} instead of {in_steps(claimed)}"
