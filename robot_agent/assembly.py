@@ -10,9 +10,9 @@ from google.protobuf.message import Message
 
 from robot_agent.agent import Agent, BeginVisit
 from robot_agent.brain import Brain, Publish
+from robot_agent.drivers.driver import Driver, DriverParts
 from robot_agent.drivers.epuck import EpuckGeometry
-from robot_agent.drivers.sim import BodyFaults, SimulatedBody
-from robot_agent.drivers.sim_robot import SimulatedRobot
+from robot_agent.drivers.table import make_driver
 from robot_agent.expert import Expert
 from robot_agent.inbox import AgentInbox
 from robot_agent.learner import Learner
@@ -20,7 +20,6 @@ from robot_agent.motion import Motion, MotionSettings
 from robot_agent.pose import PoseEstimator
 from robot_agent.reports import Reporter
 from swarm.experiment import Experiment, RobotSettings, Role
-from swarm.geometry import Pose
 from swarm.keys import Topic
 from swarm.learning.controller import Controller
 from swarm.learning.memory import ImitationMemory
@@ -41,41 +40,27 @@ class Assembly:
     def agent(self, name: str) -> Agent:
         """The agent of the robot with this id."""
         settings, robot = self._experiment, self._experiment.robot_named(name)
-        geometry = EpuckGeometry()
 
         def publish(topic: Topic[Any], message: Message) -> None:
             self._link.publish(topic, message, name)
 
+        generator = partial(self._generator, robot)
+        parts = DriverParts(settings, robot, EpuckGeometry(), self._link, generator)
+        driver = make_driver(parts)
+        brain = self._brain(robot, publish)
         motion = MotionSettings(period_s=settings.simulation.tick_s)
-        brain, body = self._brain(robot, publish), self._body(robot, geometry)
         return Agent(
             settings.compartment(robot),
             brain,
-            body,
-            PoseEstimator(geometry),
-            Motion(motion, geometry),
+            driver.body,
+            PoseEstimator(parts.geometry),
+            Motion(motion, parts.geometry),
             AgentInbox(self._link, name),
             Reporter(publish),
             settings.learning.blocked_move_s,
             settings.learning.rest_s,
-            self._visits(robot, brain, body, geometry, publish),
+            _visits(parts, driver, brain, publish),
         )
-
-    def _visits(
-        self,
-        robot: RobotSettings,
-        brain: Brain,
-        body: SimulatedRobot,
-        geometry: EpuckGeometry,
-        publish: Publish,
-    ) -> BeginVisit | None:
-        """Only a robot that watches loads what it takes to see."""
-        if not robot.watches or not isinstance(brain, Learner):
-            return None
-        from robot_agent.sight import visits_of
-
-        generator = partial(self._generator, robot)
-        return visits_of(self._experiment, robot, brain, body, geometry, self._link, publish, generator)
 
     def _brain(self, robot: RobotSettings, publish: Publish) -> Brain:
         grid = self._experiment.compartment(robot).grid
@@ -99,17 +84,14 @@ class Assembly:
             learner.remember(path, "given")
         return learner
 
-    def _body(self, robot: RobotSettings, geometry: EpuckGeometry) -> SimulatedRobot:
-        faults = self._experiment.body
-        compartment = self._experiment.compartment(robot)
-        body = SimulatedBody(
-            geometry,
-            BodyFaults(faults.slip_sd, faults.gain_error_sd, faults.latency_s),
-            Pose(*compartment.centre(compartment.grid.start), 0.0),
-            compartment,
-            self._generator(robot, "body"),
-        )
-        return SimulatedRobot(body, self._link, robot.id)
-
     def _generator(self, robot: RobotSettings, component: str) -> np.random.Generator:
         return spawned_generator(self._seed, robot.group, self._trial, robot.id, component)
+
+
+def _visits(parts: DriverParts, driver: Driver, brain: Brain, publish: Publish) -> BeginVisit | None:
+    """Only a robot that watches loads what it takes to see."""
+    if not parts.robot.watches or not isinstance(brain, Learner):
+        return None
+    from robot_agent.sight import visits_of
+
+    return visits_of(parts, driver, brain, publish)

@@ -36,10 +36,13 @@ class RunSettings:
     """[run]: how long, how often, and from which seed."""
 
     name: str
+    """The run's name, an id: it also names the run's directory."""
     moves: Annotated[int, Between(1, 10_000_000)] = 15_000
     """Moves of each learner in a trial; the paper's 15,000 take about 10 hours on robots."""
     trials: Annotated[int, Between(1, 10_000)] = 1
+    """Repetitions, each with new robots and random numbers of its own."""
     seed: Annotated[int, Between(0, 2**63 - 1)] = 1
+    """The one root of all randomness; the same seed gives the same log."""
 
 
 @dataclass(frozen=True)
@@ -47,21 +50,27 @@ class ArenaSettings:
     """[arena]: the floor, and the grid of every compartment."""
 
     width_m: Annotated[float, Between(0.1, 100)] = 3.0
+    """The floor, from west to east."""
     height_m: Annotated[float, Between(0.1, 100)] = 3.0
+    """The floor, from south to north."""
     cell_m: Annotated[float, Between(0.05, 10)] = 0.12
+    """The side of a cell."""
     columns: Annotated[int, Between(2, 100)] = 10
+    """Cells of a compartment, from west to east."""
     rows: Annotated[int, Between(2, 100)] = 10
+    """Cells of a compartment, from north to south."""
 
 
 @dataclass(frozen=True)
 class LearningSettings:
-    """[learning]: eq. 2-7."""
+    """[learning]: the rules of equations 2 to 7, and the robots' pace."""
 
     epsilon: Annotated[float, Between(0, 1)] = 0.1
     """Probability of a random move."""
     beta: Annotated[float, Between(0, 0.999)] = 0.5
     """Regulates the initial imitation probability; below 1 for the convergence proof."""
     approach: Approach = Approach.AVERAGE_Q
+    """How R is counted: not at all, by completed replays (eq. 2), or by replays that raised Q (eq. 3, 4)."""
     capacity: Annotated[int, Between(1, 1000)] = 10
     """Paths in the memory; on robots a full memory copies no more."""
     discount_rate_per_s: Annotated[float, Between(0, 100)] = 0.149
@@ -79,8 +88,11 @@ class BodySettings:
     """[body]: faults of the simulated wheels."""
 
     slip_sd: Annotated[float, Between(0, 0.5)] = 0.01
+    """Standard deviation of each wheel's relative slip in a tenth of a second."""
     gain_error_sd: Annotated[float, Between(0, 0.5)] = 0.015
+    """Standard deviation of each wheel's relative error in size."""
     latency_s: Annotated[float, Between(0, 1)] = 0.06
+    """From a command to its effect."""
 
 
 @dataclass(frozen=True)
@@ -88,9 +100,13 @@ class TrackerSettings:
     """[tracker]: which tracking system and, for the simulated one, its faults."""
 
     backend: str = "sim"
+    """The tracking system; see how-to-add-a-tracker.md."""
     rate_hz: Annotated[float, Between(0.1, 1000)] = 10.0
+    """Poses of each robot a second."""
     noise_m: Annotated[float, NonNegative] = 0.001
+    """Standard deviation of x and of y."""
     noise_rad: Annotated[float, NonNegative] = 0.0087
+    """Standard deviation of the heading."""
     latency_s: Annotated[float, Between(0, 5)] = 0.06
     """At least this late; in lockstep a pose arrives two ticks after it was true."""
     loss: Annotated[float, Between(0, 1)] = 0.02
@@ -98,6 +114,7 @@ class TrackerSettings:
     blackouts_per_hour: Annotated[float, NonNegative] = 10.0
     """Longer losses of one robot."""
     blackout_s: Annotated[float, NonNegative] = 3.0
+    """How long such a loss lasts."""
 
 
 class Watching(Enum):
@@ -116,17 +133,19 @@ class VisitSettings:
     every_tracks: Annotated[int, Between(1, 100_000)] = 10
     """A learner visits at the start and after so many journeys, until its memory is full."""
     duration_s: Annotated[float, Between(1, 600)] = 30.0
+    """How long a learner watches."""
     frames_per_s: Annotated[float, Between(0.5, 30)] = 5.0
+    """Camera frames that are looked at while watching."""
     moves: Annotated[int, Between(1, 100)] = 5
     """Consecutive moves that are remembered of what was seen."""
     profile: Watching = Watching.BEST
+    """How frames become moves; see copying.md."""
 
 
 @dataclass(frozen=True)
 class CameraSettings:
     """[camera]: the camera of robots that watch."""
 
-    driver: str = "sim"
     calibration: str = ""
     """A calibration file (see deploy/cameras); the simulated camera has one built in."""
     colours: str = ""
@@ -140,6 +159,7 @@ class SimulationSettings:
     """[simulation]: the length of a tick and the number of processes for the robots."""
 
     tick_s: Annotated[float, Between(0.01, 1)] = 0.1
+    """Control period of every robot, and the length of a lockstep tick."""
     processes: Annotated[int, Between(0, 1000)] = 0
     """Processes that host the robots; 0 gives each robot its own, as on hardware."""
 
@@ -149,14 +169,19 @@ class RobotSettings:
     """[[robot]]: one robot, its compartment and what it may imitate."""
 
     id: str
+    """The robot's name in every key and in the log: a small letter, then at most 31 of a-z, 0-9, _ and -."""
     south_west_m: tuple[float, float]
     """The compartment's corner in the arena frame."""
+    driver: str = "sim"
+    """What moves it; see how-to-add-a-driver.md."""
     role: Role = Role.LEARNER
+    """A learner learns; an expert follows the shortest path indefinitely."""
     condition: str = ""
     """Learners of one condition share a curve; the role's name if empty."""
     watches: str = ""
     """The robot whose moves it copies through its camera; none if empty."""
     skirt: str = "red"
+    """The colour of its skirt, by which others see it."""
     paths: tuple[tuple[str, ...], ...] = ()
     """Paths given at the start, each a list of compass moves."""
 

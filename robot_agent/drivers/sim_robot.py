@@ -1,4 +1,4 @@
-"""The `sim` driver: a simulated e-puck that shows the simulated tracker where it really is.
+"""The `sim` driver: a simulated e-puck, with a camera if it watches, that shows the simulated tracker where it really is.
 
 It is a body like any other: the agent cannot tell. A hand that carries a real robot is a `carry`
 message here.
@@ -7,7 +7,10 @@ message here.
 from __future__ import annotations
 
 from robot_agent.drivers.body import WheelSpeeds, WheelSteps
-from robot_agent.drivers.sim import SimulatedBody
+from robot_agent.drivers.camera import Camera
+from robot_agent.drivers.camera_model import CameraModel
+from robot_agent.drivers.driver import DriverParts
+from robot_agent.drivers.sim import BodyFaults, SimulatedBody
 from swarm import keys
 from swarm.geometry import Pose
 from swarm.link import Link
@@ -43,3 +46,29 @@ class SimulatedRobot:
 
     def close(self) -> None:
         self.body.close()
+
+
+class SimulatedDriver:
+    """A simulated robot in its compartment, at the start."""
+
+    def __init__(self, parts: DriverParts) -> None:
+        faults = parts.experiment.body
+        compartment = parts.experiment.compartment(parts.robot)
+        self._parts = parts
+        self._body = SimulatedBody(
+            parts.geometry,
+            BodyFaults(faults.slip_sd, faults.gain_error_sd, faults.latency_s),
+            Pose(*compartment.centre(compartment.grid.start), 0.0),
+            compartment,
+            parts.generator("body"),
+        )
+        self.body = SimulatedRobot(self._body, parts.link, parts.robot.id)
+
+    def camera(self, model: CameraModel) -> Camera:
+        """A rendered camera; what it takes to render is loaded here and not before."""
+        from robot_agent.drivers.sim_camera import SimulatedRobotCamera
+
+        parts = self._parts
+        light = parts.experiment.camera.conditions
+        generator = parts.generator("camera")
+        return SimulatedRobotCamera(model, light, self._body, parts.link, parts.robot.id, generator)
