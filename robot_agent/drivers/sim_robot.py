@@ -1,4 +1,4 @@
-"""The `sim` driver: a simulated e-puck, with a camera if it watches, that shows the simulated tracker where it really is.
+"""The `sim` driver: a simulated e-puck that shows the simulated tracker where it really is.
 
 It is a body like any other: the agent cannot tell. A hand that carries a real robot is a `carry`
 message here.
