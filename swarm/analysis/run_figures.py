@@ -15,6 +15,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 """Told apart by colour-blind readers too (Okabe and Ito)."""
 GREY = "#595959"
 DRAWN_POINTS = 1500
+BOLD_POINTS = 300
 LEGEND_COLUMNS = 3
 
 
@@ -43,7 +44,8 @@ def _draw(axes: Axes, curves: Curves, colour: str) -> None:
         axes.fill_between(drawn.times, band.low, band.high, color=colour, alpha=0.18, linewidth=0)
     trials = len(drawn.values)
     label = f"{curves.name}  ({trials} {'trial' if trials == 1 else 'trials'})"
-    axes.plot(drawn.times, drawn.values.mean(axis=0), color=colour, linewidth=1.8, label=label)
+    width = 1.8 if len(drawn.times) <= BOLD_POINTS else 1.0
+    axes.plot(drawn.times, drawn.values.mean(axis=0), color=colour, linewidth=width, label=label)
 
 
 def _scale(axes: Axes, found: RunCurves) -> None:
