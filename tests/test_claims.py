@@ -195,7 +195,7 @@ def test_the_command_judges_and_reports(small_report: tuple[dict[str, Any], list
     assert len(gain["comparisons"]) == 3
     assert {"paper_test", "honest_test", "effect", "why"} <= set(gain["comparisons"][0])
     assert result["claims"][2]["verdict"] == "holds in part"
-    assert lines[3].startswith("3 claims: ")
+    assert lines[3].startswith("3 claims; holds: ")
     json.dumps(result, allow_nan=False)
 
 

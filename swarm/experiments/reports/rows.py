@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from swarm.analysis.effect_size import EffectSize
 from swarm.experiments.assessment import Assessment
-from swarm.experiments.judging.finding import Finding, Tested
+from swarm.experiments.judging.finding import Finding, Tested, Verdict
 from swarm.experiments.judging.wording import in_windows
 
 COLUMNS = ("compared", "paper's test", "honest test", "effect (95 % interval)", "verdict")
@@ -60,6 +60,6 @@ def p_value(p: float) -> str:
 
 def summary(assessment: Assessment) -> str:
     """How many claims have which verdict."""
-    verdicts = [judged.verdict.value for judged in assessment.judged]
-    counts = ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in dict.fromkeys(sorted(verdicts)))
-    return f"{len(verdicts)} claims: {counts}"
+    verdicts = [judged.verdict for judged in assessment.judged]
+    counts = [f"{verdict.value}: {verdicts.count(verdict)}" for verdict in Verdict if verdict in verdicts]
+    return f"{len(verdicts)} claims; {', '.join(counts)}"
