@@ -44,7 +44,7 @@ class LiveHub:
         self._senders: dict[str, Sender] = {}
         self._sequencer = Sequencer()
         self.without_header = 0
-        """Messages that were left out because nothing says who sent them when."""
+        """Messages that were left out because nothing sensible says who sent them when."""
 
     def start(self) -> None:
         """Wait until every robot of the experiment is alive; name those that are missing."""
@@ -85,7 +85,7 @@ class LiveHub:
     def _items(self, samples: list[Sample]) -> Iterator[LogItem]:
         for sample in samples:
             header = Header.unpack(sample.attachment)
-            if header is None:
+            if header is None or header.t_ns < 0:
                 self.without_header += 1
             else:
                 yield LogItem(sample.key, header.epoch, header.sequence, header.t_ns, sample.payload)

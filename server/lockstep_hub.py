@@ -63,7 +63,7 @@ class LockstepHub:
         """Wait for every process's HELLO; the first tick answers it."""
         deadline_s = self._monotonic_s() + GREETED_WITHIN_S
         while missing := sorted(set(self._senders) - set(self._subscriptions)):
-            done = parse_done(self._inbox.wait().payload)
+            done = parse_done(self._inbox.wait())
             if done and done.HasField("hello") and done.process in self._senders:
                 self._subscriptions[done.process] = list(done.hello.subscriptions)
             self._check()
@@ -100,7 +100,7 @@ class LockstepHub:
         items: list[pb.Item] = []
         began_s = named_s = self._monotonic_s()
         while waiting:
-            payload = self._inbox.wait().payload
+            payload = self._inbox.wait()
             if not payload:
                 named_s = self._look_for(waiting, began_s, named_s)
                 continue

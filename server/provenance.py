@@ -12,8 +12,10 @@ from swarm.experiment import Experiment
 PACKAGES = ("swarm-runtime", "eclipse-zenoh", "numpy", "protobuf", "mcap")
 
 
-def metadata(experiment: Experiment, file: Path, trial: int) -> dict[str, dict[str, str]]:
-    """The metadata records of a trial's log."""
+def metadata(
+    experiment: Experiment, file: Path, trial: int, versions: dict[str, str]
+) -> dict[str, dict[str, str]]:
+    """The metadata records of a trial's log; `versions` are those at the run's beginning."""
     run = experiment.run
     return {
         "experiment": {"toml": file.read_text(encoding="utf-8")},
@@ -24,7 +26,7 @@ def metadata(experiment: Experiment, file: Path, trial: int) -> dict[str, dict[s
             "trial": str(trial),
         },
         "robots": {robot.id: f"{robot.role.value} {robot.group}" for robot in experiment.robot},
-        "versions": {"python": sys.version.split()[0], "commit": commit(), **_versions()},
+        "versions": versions,
     }
 
 
@@ -45,8 +47,9 @@ def _git(here: Path, *arguments: str) -> str:
     return answer.stdout.strip() if answer.returncode == 0 else ""
 
 
-def _versions() -> dict[str, str]:
-    found = {}
+def versions() -> dict[str, str]:
+    """The program's commit, and the versions of Python and of the packages that shape a log."""
+    found = {"python": sys.version.split()[0], "commit": commit()}
     for package in PACKAGES:
         try:
             found[package] = version(package)

@@ -13,7 +13,7 @@ from typing import Any
 from server.conductor import Conductor
 from server.health import Health
 from server.progress import RunProgress
-from server.provenance import metadata
+from server.provenance import metadata, versions
 from server.recorder import Recorder, digest
 from server.run_directory import RunDirectory
 from server.stage import SetStage
@@ -31,6 +31,7 @@ class Run:
     set_stage: SetStage
     progress: RunProgress
     results: list[TrialResult] = field(default_factory=list)
+    versions: dict[str, str] = field(default_factory=versions)
 
     def run(self) -> dict[str, Any]:
         """All trials; the run's directory is complete after each of them."""
@@ -52,7 +53,9 @@ class Run:
     def _trial(self, trial: int, file: Path) -> TrialResult:
         with self.set_stage(trial, file, self.directory.output(trial)) as stage:
             conductor = Conductor(self.experiment, trial, stage.hub.publish, stage.hand)
-            recorder = Recorder(self.directory.log(trial), metadata(self.experiment, file, trial))
+            recorder = Recorder(
+                self.directory.log(trial), metadata(self.experiment, file, trial, self.versions)
+            )
             health = Health(conductor.event)
             return Trial(stage, conductor, recorder, health, self.progress.show).run()
 
