@@ -59,9 +59,9 @@ class Inbox:
             samples.append(_sample(sample))
         return samples
 
-    def wait(self) -> Sample:
-        """The next sample; blocks. An inbox made with `wake_s` gets an empty payload that often."""
-        return _sample(self._subscriber.recv())
+    def wait(self) -> bytes:
+        """The next payload; blocks. An inbox made with `wake_s` gets an empty one that often."""
+        return self._subscriber.recv().payload.to_bytes()
 
 
 class Sender:

@@ -69,7 +69,7 @@ class LockstepLink:
     def _next_tick(self) -> pb.Tick:
         silent_wakes = 0
         while True:
-            payload = self._ticks.wait().payload
+            payload = self._ticks.wait()
             if payload:
                 tick = pb.Tick.FromString(payload)
                 if tick.number > self._number or tick.end:
