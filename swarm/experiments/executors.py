@@ -41,10 +41,14 @@ def workers(scheduler: str, jobs: int) -> Iterator[Workers]:
                 "a worker process died (out of memory?); what was finished is kept: start again, "
                 "perhaps with fewer --jobs"
             ) from error
-    elif scheduler == "dask" or "://" in scheduler:
+    else:
         with _dask(scheduler, jobs) as dask_workers:
             yield dask_workers
-    else:
+
+
+def check_scheduler(scheduler: str) -> None:
+    """UserError unless `workers` knows the scheduler, or it is an address."""
+    if scheduler not in SCHEDULERS and "://" not in scheduler:
         known = ", ".join(SCHEDULERS)
         raise UserError(f"unknown scheduler {scheduler!r}; known: {known} or an address like tcp://HOST:8786")
 

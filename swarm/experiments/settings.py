@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from swarm.errors import UserError
+from swarm.experiments.executors import check_scheduler
 from swarm.experiments.study import Study
 
 
@@ -26,6 +27,7 @@ class Settings:
                 raise UserError(f"--{name} {value}: give at least 1")
         if self.seed < 0:
             raise UserError(f"--seed {self.seed}: give 0 or more")
+        check_scheduler(self.scheduler)
 
     @property
     def root(self) -> Path:
