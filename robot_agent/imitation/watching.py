@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from robot_agent.drivers.camera import Camera, Frame
 from robot_agent.imitation.observation import ObservedPosition, position_from_sighting
+from robot_agent.imitation.searching import Search
 from robot_agent.imitation.seeing import NotSeen, Seer, Sighting
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose, wrap_angle_rad
@@ -35,7 +36,7 @@ class Watch:
     """One observation, from its first frame to its last.
 
     Call `step` at every tick with the own pose; it returns the turning speed that follows the
-    demonstrator. `failed` says why the observation had to be given up: nothing is learnt from it.
+    demonstrator, or looks for it. `failed` says why the observation had to be given up: nothing is learnt from it.
     """
 
     def __init__(
@@ -49,6 +50,7 @@ class Watch:
         self._period_ns = round(NS_PER_S / frames_per_s)
         self._due_ns = began_ns
         self._stood: Pose | None = None
+        self._search = Search(began_ns)
         self._towards_rad: float | None = None
         self._looked_from_rad: float | None = None
         self._repeated = 0
@@ -100,6 +102,7 @@ class Watch:
         from_rad, self._looked_from_rad = self._looked_from_rad, own_pose.theta_rad
         turned_rad = None if from_rad is None else wrap_angle_rad(own_pose.theta_rad - from_rad)
         answer = self._seer.look(frame, turned_rad)
+        self._towards_rad = self._search.towards_rad(answer, own_pose.theta_rad, self._towards_rad)
         position = None
         if isinstance(answer, Sighting):
             model = self._seer.model

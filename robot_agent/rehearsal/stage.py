@@ -1,0 +1,135 @@
+"""An observer with its camera at its place, in front of a demonstration that was driven before."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from robot_agent.drivers.body import STOPPED
+from robot_agent.drivers.camera_conditions import conditions
+from robot_agent.drivers.camera_scene import Body, Rectangle, Scene
+from robot_agent.drivers.camera_sim import SceneCamera, SimulatedCamera
+from robot_agent.drivers.epuck import EpuckGeometry
+from robot_agent.drivers.sim_camera import BUILT_IN_MODEL, calibration_frames_of
+from robot_agent.imitation.calibration import learn_colour_table
+from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, copy_moves
+from robot_agent.imitation.seeing import PROFILES, Seer
+from robot_agent.imitation.watching import Watch
+from robot_agent.rehearsal.drive import Demonstration, TrackedRobot
+from swarm.clock import NS_PER_S
+from swarm.experiment import Experiment, RobotSettings, Role, RunSettings, Watching
+from swarm.geometry import Pose, wrap_angle_rad
+
+SETTLE_TICKS = 20
+"""The observer stands for so long before it watches, as in a run, and knows its heading by then."""
+
+
+def rehearsal_experiment(profile: Watching = Watching.BEST, light: str = "realistic") -> Experiment:
+    """Two robots in compartments of the paper's size; the second watches the first."""
+    demonstrator = RobotSettings("demonstrator", (0.0, 0.0), role=Role.EXPERT)
+    observer = RobotSettings("observer", (1.5, 0.0), watches="demonstrator")
+    experiment = Experiment(RunSettings("rehearsal"), (demonstrator, observer))
+    visits, camera = replace(experiment.visits, profile=profile), replace(experiment.camera, conditions=light)
+    return replace(experiment, visits=visits, camera=camera)
+
+
+class Watcher(Protocol):
+    """A Watch, or anything else that turns the observer."""
+
+    def step(self, own_pose: Pose | None, t_ns: int) -> float:
+        """The turning speed in rad/s at this tick."""
+
+
+@dataclass(frozen=True)
+class Rehearsed:
+    """A demonstration and what the observer made of it."""
+
+    demonstration: Demonstration
+    watch: Watch
+    copied: Copy | NoCopy
+
+    @property
+    def copied_moves(self) -> tuple[int, ...]:
+        """What was copied; nothing if it was given up."""
+        return () if isinstance(self.copied, NoCopy) else tuple(map(int, self.copied.path().moves))
+
+
+class Stage:
+    """The observer's place, its body, camera and seer."""
+
+    def __init__(self, experiment: Experiment, rng: np.random.Generator) -> None:
+        self._experiment = experiment
+        demonstrator, observer = experiment.robot
+        self._skirt = demonstrator.skirt
+        self._tick_ns = round(experiment.simulation.tick_s * NS_PER_S)
+        body_rng, camera_rng, calibration_rng = rng.spawn(3)
+        self.place = experiment.observers_place(demonstrator)
+        walls = experiment.compartment(demonstrator)
+        self.room = Rectangle(walls.west_m, walls.south_m, walls.east_m, walls.north_m)
+        self.robot = TrackedRobot(experiment, self.place, experiment.compartment(observer), body_rng)
+        profile = PROFILES[experiment.visits.profile.value]
+        model = BUILT_IN_MODEL.scaled(profile.width, profile.height)
+        table = learn_colour_table(
+            calibration_frames_of(model, self._skirt, calibration_rng), model, self._skirt
+        )
+        self.seer = Seer(experiment.visits.profile.value, model, table)
+        light = SimulatedCamera(model, conditions(experiment.camera.conditions), camera_rng)
+        self.camera = SceneCamera(light, self._look)
+        self.shown: Callable[[int], Scene | None] = lambda _: Scene((self.room,))
+        """What stands before the camera at a tick (0 is the first of the watching); None stalls the camera."""
+        self._began_ns = 0
+        self._own_before_rad: float | None = None
+
+    def watch(self, demonstration: Demonstration) -> Rehearsed:
+        """See the whole demonstration, and copy it."""
+        self.shown = self.scenes(demonstration)
+        visits = self._experiment.visits
+        began_ns = self.settle()
+        duration_s = len(demonstration.track) * self._experiment.simulation.tick_s
+        watch = Watch(self.camera, self.seer, began_ns, duration_s, visits.frames_per_s)
+        self.run(watch, began_ns, len(demonstration.track))
+        profile, cell_m = CopyProfile(visits.profile.value), self._experiment.arena.cell_m
+        copied = copy_moves(watch.positions, profile, cell_m, watch.expected_frames)
+        return Rehearsed(demonstration, watch, copied)
+
+    def scenes(self, demonstration: Demonstration) -> Callable[[int], Scene]:
+        """The compartment with the demonstrator in it at each tick, with the velocity that blurs its image."""
+        track, tick_s = demonstration.track, self._experiment.simulation.tick_s
+
+        def scene(tick: int) -> Scene:
+            now = track[min(tick, len(track) - 1)]
+            before = track[min(max(tick - 1, 0), len(track) - 1)]
+            velocity_m_s = ((now.x_m - before.x_m) / tick_s, (now.y_m - before.y_m) / tick_s)
+            return Scene((self.room,), (Body(now, self._skirt, velocity_m_s),))
+
+        return scene
+
+    def settle(self) -> int:
+        """Let the observer stand and learn where it is; returns the time at which the watching begins."""
+        for tick in range(1, SETTLE_TICKS):
+            self.robot.observe(tick * self._tick_ns)
+        self._began_ns = SETTLE_TICKS * self._tick_ns
+        return self._began_ns
+
+    def run(self, watcher: Watcher, began_ns: int, ticks: int) -> None:
+        """Let the watcher look and turn the observer for so many ticks."""
+        geometry = EpuckGeometry()
+        for tick in range(ticks):
+            t_ns = began_ns + tick * self._tick_ns
+            turn_rad_per_s = watcher.step(self.robot.observe(t_ns), t_ns)
+            speeds = geometry.wheel_speeds(0.0, turn_rad_per_s) if turn_rad_per_s else STOPPED
+            self.robot.body.drive(speeds, t_ns)
+
+    def _look(self, t_ns: int) -> tuple[Pose, Scene, float] | None:
+        """The observer's true pose, the scene and the turning speed that blurs it."""
+        scene = self.shown((t_ns - self._began_ns) // self._tick_ns)
+        if scene is None:
+            return None
+        own = self.robot.body.truth(t_ns)
+        before_rad = own.theta_rad if self._own_before_rad is None else self._own_before_rad
+        self._own_before_rad = own.theta_rad
+        elapsed_s = 1 / self._experiment.visits.frames_per_s
+        return own, scene, wrap_angle_rad(own.theta_rad - before_rad) / elapsed_s

@@ -1,0 +1,121 @@
+"""How well robots copy, from rendered frames to lists; `python -m tests.benchmarks.rendered_copying`.
+
+Prints one JSON line: for each profile, light and kind of demonstration the share of wrong lists with its 95 %
+interval (Wilson), the mean edit distance, why nothing was copied, and CPU seconds a demonstration (rendering
+included). `--csv FILE` also writes the table. `--conditions` picks some, such as best/hard/random.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import math
+import time
+from collections import Counter
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from robot_agent.imitation.copying import NoCopy
+from robot_agent.rehearsal.rehearse import rehearsals
+from robot_agent.rehearsal.stage import rehearsal_experiment
+from swarm.experiment import Watching
+from swarm.learning.edit_distance import edit_distance
+
+BARS = {
+    "best/realistic/random": (0.0, 0.01),
+    "best/realistic/expert": (0.0, 0.01),
+    "best/hard/random": (0.0, 0.06),
+    "best/hard/expert": (0.0, 0.06),
+    "paper/realistic/random": (0.30, 0.70),
+    "paper/realistic/expert": (0.30, 0.70),
+}
+"""Least and most share of wrong lists."""
+
+
+@dataclass(frozen=True)
+class Score:
+    """What came of one condition's demonstrations."""
+
+    condition: str
+    demonstrations: int
+    wrong: float
+    wrong_low: float
+    wrong_high: float
+    edit_mean: float
+    not_copied: int
+    seen: float
+    cpu_s: float
+    met: bool
+    reasons: dict[str, int]
+
+
+def score(condition: str, count: int, seed: int) -> Score:
+    """Rehearse, and compare every copied list with the true one; no copy counts as an empty list."""
+    profile, light, kind = condition.split("/")
+    experiment = rehearsal_experiment(Watching(profile), light)
+    edits, reasons, seen = [], Counter[str](), 0.0
+    began_s = time.process_time()
+    for rehearsed in rehearsals(experiment, kind, count, seed):
+        edits.append(edit_distance(rehearsed.copied_moves, list(map(int, rehearsed.demonstration.moves))))
+        seen += len(rehearsed.watch.positions) / max(1, len(rehearsed.watch.looks))
+        if isinstance(rehearsed.copied, NoCopy):
+            reasons[rehearsed.copied.reason] += 1
+    wrong = 1 - edits.count(0) / count
+    low, high = wilson(wrong, count)
+    least, most = BARS[condition]
+    return Score(
+        condition,
+        count,
+        round(wrong, 4),
+        round(low, 4),
+        round(high, 4),
+        round(sum(edits) / count, 4),
+        sum(reasons.values()),
+        round(seen / count, 4),
+        round((time.process_time() - began_s) / count, 3),
+        least <= wrong <= most,
+        dict(reasons),
+    )
+
+
+def wilson(share: float, count: int, z: float = 1.96) -> tuple[float, float]:
+    """The 95 % score interval of a proportion (Wilson 1927)."""
+    middle = share + z * z / (2 * count)
+    half = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
+    scale = 1 + z * z / count
+    return max(0.0, (middle - half) / scale), min(1.0, (middle + half) / scale)
+
+
+def write_csv(scores: list[Score], path: Path) -> None:
+    """A row for each condition."""
+    rows = [{name: value for name, value in asdict(each).items() if name != "reasons"} for each in scores]
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--demonstrations", type=int, default=300)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--conditions", nargs="+", default=list(BARS), choices=list(BARS))
+    parser.add_argument("--csv", type=Path, default=None)
+    arguments = parser.parse_args()
+    scores = [
+        score(condition, arguments.demonstrations, arguments.seed) for condition in arguments.conditions
+    ]
+    if arguments.csv:
+        write_csv(scores, arguments.csv)
+    met = all(each.met for each in scores)
+    table = {each.condition: asdict(each) for each in scores}
+    print(
+        json.dumps(
+            {"benchmark": "rendered_copying", "seed": arguments.seed, "bars_met": met, "scores": table}
+        )
+    )
+
+
+if __name__ == "__main__":
+    main()
