@@ -166,11 +166,11 @@ class Agent:
         self._reporter.command(sent, seen.pose)
         self._reporter.status(seen.t_ns, self.activity.value, self.brain, seen.pose_age_s, self._inbox.bad)
 
-    def resume_from(self, checkpoint: Checkpoint | None) -> None:
+    def resume_from(self, checkpoint: Checkpoint) -> None:
         """Keep the checkpoint up to date after every move, and go on from it if it has something."""
         self._checkpoint = checkpoint
-        saved = checkpoint.load() if checkpoint else None
-        if checkpoint and saved:
+        saved = checkpoint.load()
+        if saved:
             try:
                 self.brain.restore(saved["brain"])
                 self.state = int(saved["state"])

@@ -28,9 +28,10 @@ def run(arguments: argparse.Namespace) -> None:
     with joined(arguments, "robot", names, experiment.simulation.tick_s) as link:
         assembly = Assembly(experiment, link, arguments.trial)
         agents = [assembly.agent(name) for name in names]
-        checkpoints = _checkpoints(arguments.state, names)
-        for agent, checkpoint in zip(agents, checkpoints, strict=True):
-            agent.resume_from(checkpoint)
+        if arguments.state:
+            run = f"{experiment.run.name}, seed {experiment.run.seed}, trial {arguments.trial}"
+            for agent, name in zip(agents, names, strict=True):
+                agent.resume_from(Checkpoint(arguments.state, name, run))
         try:
             for t_ns in link.ticks():
                 for agent in agents:
@@ -53,10 +54,6 @@ def _names(wanted: str, experiment: Experiment) -> list[str]:
     if not names:
         raise UserError(f"--robot is missing: say which robot this is; known: {', '.join(known)}")
     return names
-
-
-def _checkpoints(directory: Path | None, names: list[str]) -> list[Checkpoint | None]:
-    return [Checkpoint(directory, name) if directory else None for name in names]
 
 
 def _parser() -> OneLineParser:

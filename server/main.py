@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -35,10 +35,12 @@ def run(arguments: argparse.Namespace) -> None:
     directory = RunDirectory.create(arguments.out, experiment.run.name)
     with RunProgress(experiment, Console(stderr=True)) as progress:
         set_stage = simulated(experiment, arguments.speed, progress.warn)
+        trials: Sequence[int] = range(experiment.run.trials)
         if arguments.listen:
+            trials = [arguments.trial]
             settings = BusSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
             set_stage = laboratory(experiment, settings, progress.warn)
-        summary = Run(experiment, arguments.experiment, directory, set_stage, progress).run()
+        summary = Run(experiment, arguments.experiment, directory, set_stage, trials, progress).run()
     if arguments.json:
         print_json(summary)
     else:
@@ -71,6 +73,13 @@ def _parser() -> OneLineParser:
         "--listen",
         metavar="tcp/HOST:PORT",
         help="wait here for the robots' agents and the tracker bridge, for instance tcp/0.0.0.0:7447",
+    )
+    real.add_argument(
+        "--trial",
+        type=_at_least(0),
+        default=0,
+        metavar="N",
+        help="a laboratory runs one trial at a time, from 0; the agents are started with the same number",
     )
     real.add_argument(
         "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -29,6 +30,8 @@ class Run:
     file: Path
     directory: RunDirectory
     set_stage: SetStage
+    trials: Sequence[int]
+    """Their numbers, in order."""
     progress: RunProgress
     results: list[TrialResult] = field(default_factory=list)
     versions: dict[str, str] = field(default_factory=versions)
@@ -40,7 +43,7 @@ class Run:
         self._write_manifest("running")
         state = "interrupted"
         try:
-            for trial in range(self.experiment.run.trials):
+            for trial in self.trials:
                 self.progress.begin(trial)
                 self.results.append(self._trial(trial, copy))
             state = "complete"
@@ -60,7 +63,7 @@ class Run:
             return Trial(stage, conductor, recorder, health, self.progress.show).run()
 
     def _summary(self, wall_s: float) -> dict[str, Any]:
-        logs = [self.directory.log(trial) for trial in range(self.experiment.run.trials)]
+        logs = [self.directory.log(trial) for trial in self.trials]
         logs = [log for log in logs if log.exists()]
         sim_s = sum(result.sim_s for result in self.results)
         return {
@@ -93,9 +96,9 @@ class Run:
                 "trial": trial,
                 "seed": run.seed,
                 "log": self.directory.log(trial).name,
-                "state": "complete" if trial < len(self.results) else state,
+                "state": "complete" if number < len(self.results) else state,
             }
-            for trial in range(run.trials)
+            for number, trial in enumerate(self.trials)
             for robot in self.experiment.robot
         ]
         self.directory.write_json("manifest.json", {"name": run.name, "moves": run.moves, "trials": records})

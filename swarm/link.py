@@ -7,10 +7,12 @@ from typing import Any, Protocol, TypeVar
 
 from google.protobuf.message import Message
 
+from swarm import keys
 from swarm.bus import Bus, Inbox, Sender
 from swarm.clock import WallClock
 from swarm.feed import Feed
 from swarm.keys import Topic
+from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header
 
 M = TypeVar("M", bound=Message)
@@ -53,6 +55,7 @@ class LiveLink:
         self._sequencer = Sequencer()
         self._senders: dict[str, Sender] = {}
         self._inboxes: list[tuple[Inbox, Feed[Any]]] = []
+        self._run_states = self.subscribe(keys.RUN_STATE)
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
         """A feed filled at every tick; `*` in a key keeps every message, since it holds many keys."""
@@ -74,3 +77,5 @@ class LiveLink:
                 for sample in inbox.poll():
                     feed.put(sample.key, Header.unpack(sample.attachment), sample.payload)
             yield t_ns
+            if any(state.message.phase == pb.RunState.ENDED for state in self._run_states.take()):
+                return
