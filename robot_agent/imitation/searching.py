@@ -29,7 +29,7 @@ class Search:
     def towards_rad(
         self, answer: Sighting | NotSeen, own_theta_rad: float, towards_rad: float | None
     ) -> float | None:
-        """The heading to turn to after a frame; as it was while the demonstrator is seen or only just lost."""
+        """The heading to turn to after a frame: as it was, unless the demonstrator has been lost for long."""
         if self._middle_rad is None:
             self._middle_rad = own_theta_rad
         if isinstance(answer, Sighting):

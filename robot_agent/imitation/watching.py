@@ -36,7 +36,8 @@ class Watch:
     """One observation, from its first frame to its last.
 
     Call `step` at every tick with the own pose; it returns the turning speed that follows the
-    demonstrator, or looks for it. `failed` says why the observation had to be given up: nothing is learnt from it.
+    demonstrator, or looks for it. `failed` says why the observation had to be given up: nothing is
+    learnt from it.
     """
 
     def __init__(

@@ -18,7 +18,7 @@ KINDS: dict[str, ChooseMoves] = {"random": random_moves, "expert": expert_moves}
 
 
 def rehearse(experiment: Experiment, kind: str, number: int, seed: int) -> Rehearsed:
-    """The demonstration of this number: as many moves as the experiment's robots remember, seen and copied."""
+    """Show, watch and copy the demonstration of this number, of as many moves as robots remember."""
     rng = spawned_generator(seed, kind, number, "demonstrator", "rehearsal")
     grid = experiment.compartment(experiment.robot[0]).grid
     start, moves = KINDS[kind](rng, grid, experiment.visits.moves)

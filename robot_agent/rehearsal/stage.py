@@ -11,9 +11,9 @@ import numpy as np
 from robot_agent.drivers.body import STOPPED
 from robot_agent.drivers.camera_conditions import conditions
 from robot_agent.drivers.camera_scene import Body, Rectangle, Scene
-from robot_agent.drivers.camera_sim import SceneCamera, SimulatedCamera
+from robot_agent.drivers.camera_sim import SceneCamera, SimulatedCamera, calibration_frames
 from robot_agent.drivers.epuck import EpuckGeometry
-from robot_agent.drivers.sim_camera import BUILT_IN_MODEL, calibration_frames_of
+from robot_agent.drivers.sim_camera import BUILT_IN_MODEL, CALIBRATION_RANGES_M
 from robot_agent.imitation.calibration import learn_colour_table
 from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, copy_moves
 from robot_agent.imitation.seeing import PROFILES, Seer
@@ -65,21 +65,21 @@ class Stage:
         demonstrator, observer = experiment.robot
         self._skirt = demonstrator.skirt
         self._tick_ns = round(experiment.simulation.tick_s * NS_PER_S)
-        body_rng, camera_rng, calibration_rng = rng.spawn(3)
+        body_rng, camera_rng = rng.spawn(2)
         self.place = experiment.observers_place(demonstrator)
         walls = experiment.compartment(demonstrator)
         self.room = Rectangle(walls.west_m, walls.south_m, walls.east_m, walls.north_m)
         self.robot = TrackedRobot(experiment, self.place, experiment.compartment(observer), body_rng)
         profile = PROFILES[experiment.visits.profile.value]
         model = BUILT_IN_MODEL.scaled(profile.width, profile.height)
-        table = learn_colour_table(
-            calibration_frames_of(model, self._skirt, calibration_rng), model, self._skirt
-        )
-        self.seer = Seer(experiment.visits.profile.value, model, table)
         light = SimulatedCamera(model, conditions(experiment.camera.conditions), camera_rng)
+        frames = calibration_frames(light, self._skirt, CALIBRATION_RANGES_M)
+        self.seer = Seer(
+            experiment.visits.profile.value, model, learn_colour_table(frames, model, self._skirt)
+        )
         self.camera = SceneCamera(light, self._look)
         self.shown: Callable[[int], Scene | None] = lambda _: Scene((self.room,))
-        """What stands before the camera at a tick (0 is the first of the watching); None stalls the camera."""
+        """What stands before the camera at a tick of the watching, counted from 0; None stalls the camera."""
         self._began_ns = 0
         self._own_before_rad: float | None = None
 
@@ -96,7 +96,7 @@ class Stage:
         return Rehearsed(demonstration, watch, copied)
 
     def scenes(self, demonstration: Demonstration) -> Callable[[int], Scene]:
-        """The compartment with the demonstrator in it at each tick, with the velocity that blurs its image."""
+        """The compartment and the demonstrator at each tick, with the velocity that blurs its image."""
         track, tick_s = demonstration.track, self._experiment.simulation.tick_s
 
         def scene(tick: int) -> Scene:
