@@ -76,6 +76,9 @@ class PlainSimulation:
             case Experienced(goal_reachings=goal_reachings):
                 while self.two.arrivals < goal_reachings:
                     self.two.step()
+                self.one.remember(self._demonstration(self.one, self.two, condition.teacher))
+            case Expert():
+                self.one.remember(self._demonstration(self.one, self.two, condition.teacher))
             case AccessExpert(moves):
                 expert = QTable(condition.arena.grid.states)
                 expert.values = expert_values(condition.arena, GAMMA).tolist()

@@ -15,6 +15,7 @@ from swarm.gridworld.condition import (
     Condition,
     EachOther,
     Experienced,
+    Expert,
     GivenPaths,
 )
 from swarm.gridworld.learners import learners, world
@@ -58,8 +59,10 @@ class Simulation:
                 for path in paths:
                     _remember(self.one, np.array(path.moves, np.uint8))
             case Experienced(goal_reachings=goal_reachings):
-                alone = Limits(UNLIMITED, goal_reachings, UNLIMITED, pair=False)
-                kernels.run(self.world, self.two, self.one, alone)
+                self._train_teacher(goal_reachings)
+                kernels.copy_moves(self.world, self.one, self.two)
+            case Expert():
+                kernels.copy_moves(self.world, self.one, self.two)
             case AccessExpert(moves):
                 self.two.agent.q[:] = expert_values(condition.arena, GAMMA).ravel()
                 kernels.prepare(self.two.agent)
@@ -67,6 +70,13 @@ class Simulation:
             case AccessEachOther(moves):
                 _remember(self.one, _any_moves(moves))
                 _remember(self.two, _any_moves(moves))
+
+    def _train_teacher(self, goal_reachings: int) -> None:
+        """Alone, and faster while nobody will see its moves: only those of its last run may be copied."""
+        unseen = self.two._replace(rules=self.two.rules._replace(seen=False))
+        for teacher, reachings in ((unseen, goal_reachings - 1), (self.two, goal_reachings)):
+            alone = Limits(UNLIMITED, reachings, UNLIMITED, pair=False)
+            kernels.run(self.world, teacher, self.one, alone)
 
     def advance(self, steps: int | None = None) -> int:
         """Go on for a number of steps (None: to the end of the run); return how many were taken."""

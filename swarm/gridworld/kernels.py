@@ -293,7 +293,7 @@ def _leave_trail(agent: Agent, action: Word, arrived: Truth) -> None:
 
 
 @_called
-def _copy_moves(world: World, one: Learner, two: Learner) -> None:
+def copy_moves(world: World, one: Learner, two: Learner) -> None:
     """`one` sees a stretch of its teacher's trajectory and remembers it.
 
     Of another agent these are its last moves, all of one run: the agents' runs are out of step, so
@@ -317,7 +317,7 @@ def _step_and_copy(world: World, one: Learner, two: Learner) -> None:
     arrived = step(world, one.agent, two.agent, one.rules)
     watches = one.rules.watches != WATCHES_NOBODY
     if arrived and watches and one.agent.arrivals[0] % one.rules.every == 0:
-        _copy_moves(world, one, two)
+        copy_moves(world, one, two)
 
 
 @_called
@@ -377,7 +377,8 @@ def run(world: World, one: Learner, two: Learner, limits: Limits) -> Whole:
     The best paths are looked for every `limits.every` steps while there is room for them.
     """
     agent, rules, points = one.agent, one.rules, len(one.found.lengths)
-    alone = not limits.pair and rules.watches == WATCHES_NOBODY and agent.remembered[0] == 0
+    watches = rules.watches != WATCHES_NOBODY
+    alone = not limits.pair and not watches and not rules.seen and agent.remembered[0] == 0
     point, due = 0, limits.every
     taken: Whole = 0
     while taken < limits.steps and agent.arrivals[0] < limits.reachings:
