@@ -8,10 +8,10 @@ from swarm.keys import ALIVE, LOCKSTEP_DONE, LOCKSTEP_TICK, TABLE, Delivery, Top
 
 _HEAD = """# Everything on the wire
 
-One line of `swarm/keys.py` says everything about a message. `{robot}` stands for a robot's id. Payloads are
-protobuf messages of `swarm/messages/swarm.proto`; 24 bytes beside each carry the sender's epoch, the message's
-number and the run's time (`swarm/messages/header.py`). A robot receives only what the column *to robots* marks:
-its own pose, its own orders and the run's state.
+One line of `swarm/keys.py` says everything about a message. `{robot}` stands for a robot's id. Payloads
+are protobuf messages of `swarm/messages/swarm.proto`; 24 bytes beside each carry the sender's epoch, the
+message's number and the run's time (`swarm/messages/header.py`). A robot receives only what the column
+*to robots* marks: its own pose, its own orders and the run's state.
 
 | key | message | meaning | rate | delivery | logged | to robots |
 |---|---|---|---|---|---|---|

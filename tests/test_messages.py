@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 
 import pytest
 from google.protobuf.message import Message
@@ -55,11 +56,7 @@ def test_a_payload_is_measured_before_it_is_decoded() -> None:
 
 
 @given(st.binary(max_size=200))
-def test_no_bytes_do_more_than_be_refused(payload: bytes) -> None:
+def test_bytes_are_refused_or_give_a_plausible_message(payload: bytes) -> None:
     for topic in TABLE:
-        try:
-            message = decode(topic.message, payload)
-        except BadMessageError as error:
-            assert str(error)
-        else:
-            check(message)
+        with suppress(BadMessageError):
+            check(decode(topic.message, payload))
