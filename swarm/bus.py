@@ -179,7 +179,7 @@ def _config(settings: BusSettings) -> zenoh.Config:
     """Scouting, gossip and shared memory off: explicit endpoints only, and nothing lost in /dev/shm."""
     import zenoh
 
-    config = zenoh.Config.from_file(str(settings.config)) if settings.config else zenoh.Config()
+    config = _config_of(settings.config) if settings.config else zenoh.Config()
     values: dict[str, object] = {
         "mode": "router" if settings.hub else "client",
         "listen/endpoints": [settings.endpoint] if settings.hub else [],
@@ -198,8 +198,22 @@ def _config(settings: BusSettings) -> zenoh.Config:
     return config
 
 
+def _config_of(file: Path) -> zenoh.Config:
+    import zenoh
+
+    try:
+        return zenoh.Config.from_file(str(file))
+    except zenoh.ZError as error:
+        raise UserError(f"{file}: no Zenoh configuration ({_reason(str(error))})") from error
+
+
+def _reason(error: str) -> str:
+    """The first words of a Zenoh error, without the place in Zenoh's own source."""
+    return " ".join(error.partition(" at /")[0].split())[:120]
+
+
 def _why_not_open(settings: BusSettings, error: str) -> str:
-    reason = " ".join(error.split())[:120]
+    reason = _reason(error)
     if settings.hub:
         cure = "is another server running there, or is the address not this machine's?"
         return f"cannot listen on {settings.endpoint}: {cure} ({reason})"
