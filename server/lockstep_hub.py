@@ -87,7 +87,11 @@ class LockstepHub:
         for item in self._to_deliver:
             for name in self._readers_of(item.key):
                 ticks[name].items.add(
-                    key=item.key, epoch=item.epoch, sequence=item.sequence, payload=item.payload
+                    key=item.key,
+                    epoch=item.epoch,
+                    sequence=item.sequence,
+                    t_ns=item.publish_t_ns,
+                    payload=item.payload,
                 )
         self._to_deliver = []
         self._frames = {name: tick.SerializeToString() for name, tick in ticks.items()}
@@ -122,7 +126,7 @@ class LockstepHub:
 
     def _batch(self, items: list[pb.Item]) -> Batch:
         t_ns = self.number * self._tick_ns
-        found = [LogItem(item.key, item.epoch, item.sequence, t_ns, item.payload) for item in items]
+        found = [LogItem(item.key, item.epoch, item.sequence, item.t_ns, item.payload) for item in items]
         found.sort()
         self._to_deliver = found
         own, self._own = self._own, []

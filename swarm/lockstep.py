@@ -42,6 +42,7 @@ class LockstepLink:
         self._items: list[pb.Item] = []
         self._answer = b""
         self._number = 0
+        self._t_ns = 0
         self.keys_received: set[str] = set()
         """Every key of which this process received a message."""
 
@@ -53,14 +54,14 @@ class LockstepLink:
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         key = topic.key(robot)
         number = self._sequencer.following(key)
-        self._items.append(
-            pb.Item(key=key, epoch=EPOCH, sequence=number, payload=message.SerializeToString())
-        )
+        payload = message.SerializeToString()
+        self._items.append(pb.Item(key=key, epoch=EPOCH, sequence=number, t_ns=self._t_ns, payload=payload))
 
     def ticks(self) -> Iterator[int]:
         while not (tick := self._next_tick()).end:
+            self._t_ns = tick.t_ns
             for item in tick.items:
-                self._deliver(item, tick.t_ns)
+                self._deliver(item)
             yield tick.t_ns
             self._number = tick.number
             self._answer = self._answer_to(tick.number)
@@ -95,14 +96,14 @@ class LockstepLink:
         )
         self._done.put(pb.Done(process=self._process, hello=hello).SerializeToString())
 
-    def _deliver(self, item: pb.Item, t_ns: int) -> None:
+    def _deliver(self, item: pb.Item) -> None:
         self.keys_received.add(item.key)
         feeds = self._routes.get(item.key)
         if feeds is None:
             feeds = tuple(feed for key, feed in self._feeds if key_matches(key, item.key))
             self._routes[item.key] = feeds
         for feed in feeds:
-            feed.put(item.key, Header(item.epoch, item.sequence, t_ns), item.payload)
+            feed.put(item.key, Header(item.epoch, item.sequence, item.t_ns), item.payload)
 
     def _answer_to(self, number: int) -> bytes:
         items, self._items = self._items, []

@@ -831,10 +831,12 @@ class Item(_message.Message):
     KEY_FIELD_NUMBER: _builtins.int
     EPOCH_FIELD_NUMBER: _builtins.int
     SEQUENCE_FIELD_NUMBER: _builtins.int
+    T_NS_FIELD_NUMBER: _builtins.int
     PAYLOAD_FIELD_NUMBER: _builtins.int
     key: _builtins.str
     epoch: _builtins.int
     sequence: _builtins.int
+    t_ns: _builtins.int
     payload: _builtins.bytes
     def __init__(
         self,
@@ -842,11 +844,12 @@ class Item(_message.Message):
         key: _builtins.str = ...,
         epoch: _builtins.int = ...,
         sequence: _builtins.int = ...,
+        t_ns: _builtins.int = ...,
         payload: _builtins.bytes = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["epoch", b"epoch", "key", b"key", "payload", b"payload", "sequence", b"sequence"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["epoch", b"epoch", "key", b"key", "payload", b"payload", "sequence", b"sequence", "t_ns", b"t_ns"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 
