@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from robot_agent.imitation.drive_back import Place, demonstration_rests
+from robot_agent.imitation.gaps import longest_seen
 from robot_agent.imitation.line_fitting import fit_segments, snap
 from robot_agent.imitation.moves import read_moves
 from robot_agent.imitation.observation import ObservedPosition
@@ -80,7 +81,8 @@ def copy_moves(
 
     `positions` are those frames in which the demonstrator was seen, out of `expected_frames`; a position
     that its neighbours contradict counts as a lost frame. The drive back to the start is left out, and so is
-    a move that the observation's beginning or end cuts. `start_m` is the middle of the start cell, where the
+    a move that the observation's beginning or end cuts; of a demonstration that was out of sight for a while
+    the longest part in sight counts. `start_m` is the middle of the start cell, where the
     drive back ends: if it is known, the drive is told from a fast demonstration more surely.
     """
     if len(positions) > MOST_POSITIONS:
@@ -96,6 +98,9 @@ def copy_moves(
     shown = demonstration_rests(smoothed, rests, cell_m, start_m)
     if len(shown) < 2:
         return NoCopy(_no_demonstration(rests))
+    shown = longest_seen(smoothed, shown)
+    if len(shown) < 2:
+        return NoCopy("the demonstrator was out of sight for so long that moves may have been missed")
     copied = _copy(sightings, smoothed, shown, profile, cell_m)
     return copied if copied.moves else NoCopy("the demonstrator moved, but by less than a cell")
 

@@ -32,6 +32,8 @@ class Demonstration:
     start: int
     moves: tuple[Move, ...]
     track: tuple[Pose, ...]
+    middles: tuple[float, ...]
+    """The tick in the middle of each move."""
 
 
 class TrackedRobot:
@@ -80,15 +82,17 @@ def demonstrate(
     heading_rad = Move(int(rng.integers(len(Move)))).theta_rad
     driver = _Driver(experiment, Pose(*walls.centre(start), heading_rad), walls, rng)
     driver.rest(rng.uniform(*FIRST_REST_S))
-    state = start
+    state, middles = start, []
     for move in moves:
         entered = walls.grid.neighbour(state, move)
         if entered is None:
             raise ValueError(f"{move.name} leaves the grid from state {state}; choose another start")
+        began = len(driver.track)
         driver.go_to(*walls.centre(entered))
+        middles.append((began + len(driver.track)) / 2)
         state = entered
     driver.rest(rng.uniform(*REST_S))
-    return Demonstration(start, tuple(moves), tuple(driver.track))
+    return Demonstration(start, tuple(moves), tuple(driver.track), tuple(middles))
 
 
 class _Driver:

@@ -50,11 +50,24 @@ class Rehearsed:
     demonstration: Demonstration
     watch: Watch
     copied: Copy | NoCopy
+    began_ns: int
+    tick_ns: int
 
     @property
     def copied_moves(self) -> tuple[int, ...]:
         """What was copied; nothing if it was given up."""
         return () if isinstance(self.copied, NoCopy) else tuple(map(int, self.copied.path().moves))
+
+    @property
+    def moves_meanwhile(self) -> tuple[int, ...]:
+        """The real moves in the time from which moves were copied: what the server compares with."""
+        if isinstance(self.copied, NoCopy):
+            return ()
+        began_ns, ended_ns = self.copied.segments[0].t_start_ns, self.copied.segments[-1].t_end_ns
+        shown = self.demonstration
+        times_ns = [self.began_ns + middle * self.tick_ns for middle in shown.middles]
+        pairs = zip(shown.moves, times_ns, strict=True)
+        return tuple(int(move) for move, t_ns in pairs if began_ns <= t_ns <= ended_ns)
 
 
 class Stage:
@@ -93,7 +106,7 @@ class Stage:
         self.run(watch, began_ns, len(demonstration.track))
         profile, cell_m = CopyProfile(visits.profile.value), self._experiment.arena.cell_m
         copied = copy_moves(watch.positions, profile, cell_m, watch.expected_frames)
-        return Rehearsed(demonstration, watch, copied)
+        return Rehearsed(demonstration, watch, copied, began_ns, self._tick_ns)
 
     def scenes(self, demonstration: Demonstration) -> Callable[[int], Scene]:
         """The compartment and the demonstrator at each tick, with the velocity that blurs its image."""
