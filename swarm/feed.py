@@ -27,13 +27,15 @@ class Feed(Generic[M]):
     """The messages of one topic that arrived since the last `take`.
 
     Of a `NEWEST` topic only the last of each key is kept. A message that repeats or comes before one
-    already seen from the same epoch is a duplicate; one from an older epoch is of a dead process.
+    already seen from the same epoch is a duplicate; one from an older epoch is of a dead process. A bad
+    message proves nothing about its sender: it does not make those before it look dead.
     """
 
     def __init__(self, topic: Topic[M]) -> None:
         self.topic = topic
         self._waiting: list[tuple[str, Header, bytes]] = []
         self._seen: dict[str, tuple[int, int]] = {}
+        self._believed: dict[str, tuple[int, int]] = {}
         self.duplicates = 0
         self.bad = 0
         self.last_bad = ""
@@ -65,10 +67,14 @@ class Feed(Generic[M]):
             self._refuse(key, "its key is not in the key table")
             return None
         try:
-            return Received(found[1], header, decode(self.topic.message, payload))
+            received = Received(found[1], header, decode(self.topic.message, payload))
         except BadMessageError as error:
+            self._seen[key] = self._believed.get(key, (0, 0))
             self._refuse(key, str(error))
             return None
+        self._believed[key] = (header.epoch, header.sequence)
+        self._seen[key] = max(self._seen[key], self._believed[key])
+        return received
 
     def _refuse(self, key: str, reason: str) -> None:
         self.bad += 1

@@ -54,3 +54,16 @@ def test_bad_messages_are_counted_and_explained() -> None:
     assert feed.bad == 4
     assert "robot/a/pose" in feed.last_bad
     assert "x_m is nan" in feed.last_bad
+
+
+def test_a_bad_message_of_a_later_epoch_does_not_silence_the_sender() -> None:
+    feed = Feed(keys.POSE)
+    feed.put("robot/a/pose", header(1, epoch=5), POSE)
+    assert len(feed.take()) == 1
+    feed.put("robot/a/pose", header(1, epoch=9), b"\xff\xffgarbage")
+    assert feed.take() == []
+    feed.put("robot/a/pose", header(2, epoch=5), POSE)
+    assert [one.header.sequence for one in feed.take()] == [2]
+    feed.put("robot/a/pose", header(2, epoch=5), POSE)
+    assert feed.take() == []
+    assert (feed.bad, feed.duplicates) == (1, 1)
