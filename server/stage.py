@@ -5,10 +5,11 @@ from __future__ import annotations
 import socket
 import time
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
+from server.cores import available_cores, keeping_to, spread
 from server.hand import Hand, Operator, SimulatedHand
 from server.hub import Hub
 from server.live_hub import LiveHub
@@ -49,7 +50,12 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
         endpoint = f"tcp/127.0.0.1:{_free_port()}"
         pace = Pace(speed is None, speed or 1.0, time.monotonic_ns())
         specs = run_table(experiment, file, endpoint, trial, pace)
-        with _bus(BusSettings(endpoint, hub=True)) as bus, Supervisor(specs, output) as supervisor:
+        cores = available_cores()
+        with (
+            keeping_to(cores[0]) if pace.lockstep else nullcontext(),
+            _bus(BusSettings(endpoint, hub=True)) as bus,
+            Supervisor(specs, output, spread(len(specs), cores)) as supervisor,
+        ):
             if pace.lockstep:
                 processes = [spec.name for spec in specs]
                 tick_s = experiment.simulation.tick_s

@@ -6,10 +6,12 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 
+from server.cores import available_cores, spread
 from swarm.errors import RunFailedError
 
 LEAVE_WITHIN_S = 5.0
@@ -28,11 +30,12 @@ class Supervisor:
     """The processes of one trial, as a context manager: none outlives the block.
 
     They run in sessions of their own, so that Ctrl-C reaches the server alone, which then ends the trial
-    in order. What they print goes to one file each.
+    in order. What they print goes to one file each. Each keeps to its core of `cores`.
     """
 
-    def __init__(self, specs: list[ProcessSpec], output: Path) -> None:
+    def __init__(self, specs: list[ProcessSpec], output: Path, cores: Sequence[int] | None = None) -> None:
         self._specs = specs
+        self._cores = cores or spread(len(specs), available_cores())
         self._output = output
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
 
@@ -69,8 +72,6 @@ class Supervisor:
         return {name: process.pid for name, process in self._processes.items()}
 
     def _started(self, spec: ProcessSpec, number: int) -> subprocess.Popen[bytes]:
-        """Each process keeps to one core in turn: a lockstep that hops between cores runs at two thirds."""
-        cores = sorted(os.sched_getaffinity(0))
         with self._log(spec.name).open("wb") as output:
             process = subprocess.Popen(
                 [sys.executable, "-m", spec.module, *spec.arguments],
@@ -80,7 +81,7 @@ class Supervisor:
                 start_new_session=True,
                 env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
             )
-        os.sched_setaffinity(process.pid, {cores[number % len(cores)]})
+        os.sched_setaffinity(process.pid, {self._cores[number]})
         return process
 
     def _how_ended(self, name: str) -> str:

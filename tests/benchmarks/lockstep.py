@@ -19,6 +19,7 @@ from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 
+from server.cores import available_cores, keeping_to, spread
 from server.lockstep_hub import LockstepHub
 from server.supervisor import ProcessSpec, Supervisor
 from swarm.bus import Bus, BusSettings
@@ -116,17 +117,26 @@ def measure(processes: int, rounds: int, ticks: int) -> dict[str, object]:
     """All three with their processes alive, a piece of each in turn."""
     endpoint = free_endpoint()
     specs = zenoh_specs(endpoint, processes)
-    with tempfile.TemporaryDirectory() as directory, Bus(BusSettings(endpoint, hub=True)) as bus:
+    cores = available_cores()
+    with (
+        tempfile.TemporaryDirectory() as directory,
+        keeping_to(cores[0]),
+        Bus(BusSettings(endpoint, hub=True)) as bus,
+    ):
         claim(bus, Presence("server", "server", "here", 1))
         pinned_path, free_path = f"{directory}/pinned", f"{directory}/free"
         bare = {path: BareHub(path, processes) for path in (pinned_path, free_path)}
         with (
-            Supervisor(specs, Path(directory) / "zenoh") as agents,
-            Supervisor(bare_specs(pinned_path, processes, "pinned"), Path(directory) / "p"),
-            Supervisor(bare_specs(free_path, processes, "free"), Path(directory) / "f") as unpinned,
+            Supervisor(specs, Path(directory) / "zenoh", spread(processes, cores)) as agents,
+            Supervisor(
+                bare_specs(pinned_path, processes, "pinned"), Path(directory) / "p", spread(processes, cores)
+            ),
+            Supervisor(
+                bare_specs(free_path, processes, "free"), Path(directory) / "f", spread(processes, cores)
+            ) as unpinned,
         ):
             for pid in unpinned.pids.values():
-                os.sched_setaffinity(pid, os.sched_getaffinity(0))
+                os.sched_setaffinity(pid, cores)
             hub = LockstepHub(bus, [spec.name for spec in specs], TICK_S, agents.check, print)
             hub.start()
             for each in bare.values():
