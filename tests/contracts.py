@@ -1,7 +1,7 @@
 """What every driver must do, written once.
 
 To have a new body examined, write a rig for it (the body, and the world behind it) and add one line to the
-list in `tests/test_body_contract.py`.
+list in `tests/test_body_contract.py`; for a tracker backend, in `tests/test_backend_contract.py`.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ import pytest
 
 from robot_agent.drivers.body import Body, WheelSpeeds, WheelSteps
 from robot_agent.drivers.epuck import EpuckGeometry
+from swarm.geometry import Pose, wrap_angle_rad
+from tracker_bridge.backends.backend import Backend, TrackedPose
 
 SECOND_NS = 1_000_000_000
 
@@ -129,3 +131,63 @@ BODY_CHECKS: tuple[Callable[[BodyRig, int], int], ...] = (
     _closing_stops_the_motors,
 )
 """The checks of a body; each takes a fresh rig and the time at which to begin, and returns when it ended."""
+
+
+class BackendRig(Protocol):
+    """A tracking system with the world behind it, simulated or emulated: robot "a" stands at (1.0, 0.5) m
+    in an arena of 3 x 2 m and heads north, robot "b" at (2.0, 1.5) m and heads west.
+    """
+
+    tolerance_m: float
+    tolerance_rad: float
+
+    @property
+    def backend(self) -> Backend:
+        """The backend to be examined."""
+
+    def run_to(self, t_ns: int) -> None:
+        """Let the world's time pass up to `t_ns`."""
+
+
+def _seen_in(rig: BackendRig, seconds: int, t_ns: int) -> list[tuple[int, list[TrackedPose]]]:
+    """What the backend gives at the ticks of some seconds, ten a second, with each tick's time."""
+    seen = []
+    for _ in range(10 * seconds):
+        t_ns += SECOND_NS // 10
+        rig.run_to(t_ns)
+        seen.append((t_ns, rig.backend.poses(t_ns)))
+    return seen
+
+
+def _sees_each_robot_where_it_is(rig: BackendRig, t_ns: int) -> None:
+    places = {"a": Pose(1.0, 0.5, math.pi / 2), "b": Pose(2.0, 1.5, math.pi)}
+    poses = [tracked for _, given in _seen_in(rig, 5, t_ns) for tracked in given]
+    assert {tracked.robot for tracked in poses} == set(places)
+    for tracked in poses:
+        place = places[tracked.robot]
+        assert tracked.pose.distance_m(place) <= rig.tolerance_m
+        turned_rad = wrap_angle_rad(tracked.pose.theta_rad - place.theta_rad)
+        assert abs(turned_rad) <= rig.tolerance_rad
+
+
+def _times_are_of_capture_and_rise(rig: BackendRig, t_ns: int) -> None:
+    began_ns, last_ns = t_ns, {"a": -1, "b": -1}
+    for now_ns, given in _seen_in(rig, 5, t_ns):
+        for tracked in given:
+            assert began_ns <= tracked.captured_t_ns <= now_ns
+            assert tracked.captured_t_ns > last_ns[tracked.robot]
+            last_ns[tracked.robot] = tracked.captured_t_ns
+    assert min(last_ns.values()) > began_ns + 3 * SECOND_NS, "it goes on seeing"
+
+
+def _gives_nothing_twice(rig: BackendRig, t_ns: int) -> None:
+    t_ns = _seen_in(rig, 2, t_ns)[-1][0]
+    assert rig.backend.poses(t_ns) == []
+
+
+BACKEND_CHECKS: tuple[Callable[[BackendRig, int], None], ...] = (
+    _sees_each_robot_where_it_is,
+    _times_are_of_capture_and_rise,
+    _gives_nothing_twice,
+)
+"""The checks of a tracker backend; each takes a fresh rig and the time at which to begin."""

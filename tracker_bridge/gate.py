@@ -69,7 +69,7 @@ class Gate:
             return None
         largest_m = max(abs(pose.x_m), abs(pose.y_m))
         hint = ": is it in millimetres?" if largest_m > 10 * max(settings.width_m, settings.height_m) else ""
-        return f"({pose.x_m:g}, {pose.y_m:g}) m is out of the arena{hint}"
+        return f"outside the arena, at ({pose.x_m:g}, {pose.y_m:g}) m{hint}"
 
     @staticmethod
     def _late(track: _Track, tracked: TrackedPose) -> str | None:
