@@ -98,7 +98,7 @@ def copy_moves(
     shown = demonstration_rests(smoothed, rests, cell_m, start_m)
     if len(shown) < 2:
         return NoCopy(_no_demonstration(rests))
-    shown = longest_seen(smoothed, shown)
+    shown = list(longest_seen(smoothed, shown))
     if len(shown) < 2:
         return NoCopy("the demonstrator was out of sight for so long that moves may have been missed")
     copied = _copy(sightings, smoothed, shown, profile, cell_m)

@@ -6,8 +6,8 @@ Prints one JSON line: for each profile, light and kind of demonstration the shar
 - `wrong`: other than what was shown in the time from which moves were copied, as the server judges it;
 - `refused`: nothing was copied, with the reasons;
 
-with 95 % intervals (Wilson), the mean edit distance to the whole list, and CPU seconds a demonstration (rendering
-included). `--csv FILE` also writes the table. `--conditions` picks some, such as best/hard/random.
+with 95 % intervals (Wilson), the mean edit distance to the whole list, and CPU seconds a demonstration (with
+rendering). `--csv FILE` also writes the table. `--conditions` picks some, such as best/hard/random.
 """
 
 from __future__ import annotations
