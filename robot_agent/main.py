@@ -17,7 +17,21 @@ from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_
 
 def main() -> None:
     """Entry point of `robot-agent`."""
-    sys.exit(guarded(lambda: run(_parser().parse_args())))
+    sys.exit(guarded(lambda: _called(sys.argv[1:])))
+
+
+def _called(words: list[str]) -> None:
+    """A tool if the first word names one, and else a robot."""
+    if words[:1] == ["calibrate"]:
+        from robot_agent.calibrating import calibrate, calibrate_parser
+
+        calibrate(calibrate_parser().parse_args(words[1:]))
+    elif words[:1] == ["collect-copies"]:
+        from robot_agent.collecting import collect, collect_parser
+
+        collect(collect_parser().parse_args(words[1:]))
+    else:
+        run(_parser().parse_args(words))
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -38,6 +52,13 @@ def run(arguments: argparse.Namespace) -> None:
                     agent.step(t_ns)
         finally:
             _stop(agents)
+            if arguments.keys:
+                _write_keys(arguments.keys, link.keys_received)
+
+
+def _write_keys(file: Path, keys_received: set[str]) -> None:
+    """One key a line: what the robot heard of the others can be read off it."""
+    file.write_text("".join(f"{key}\n" for key in sorted(keys_received)), encoding="utf-8")
 
 
 def _stop(agents: list[Agent]) -> None:
@@ -61,6 +82,8 @@ def _parser() -> OneLineParser:
         prog="robot-agent",
         description="The process on a robot's board: it finds out where the robot is, decides, drives and "
         "learns. Start the swarm server and the tracker bridge first or later: the agent waits for them.",
+        epilog="tools: `robot-agent calibrate --help` learns the colour of a skirt; "
+        "`robot-agent collect-copies --help` stores how well simulated robots copy.",
     )
     add_common_arguments(parser)
     parser.add_argument("--robot", default="", metavar="ID[,ID...]", help="which robot this is")
@@ -69,5 +92,11 @@ def _parser() -> OneLineParser:
         type=Path,
         metavar="DIR",
         help="keep what was learnt here; go on from it after a restart",
+    )
+    parser.add_argument(
+        "--keys",
+        type=Path,
+        metavar="FILE",
+        help="write every key of which a message was received here at the end, one a line",
     )
     return parser

@@ -21,6 +21,9 @@ M = TypeVar("M", bound=Message)
 class Link(Protocol):
     """The same for real time and for lockstep, so that no process knows which it is in."""
 
+    keys_received: set[str]
+    """Every key of which this process received a message."""
+
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
         """A feed of one robot's messages, or of all robots'."""
 
@@ -55,6 +58,7 @@ class LiveLink:
         self._sequencer = Sequencer()
         self._senders: dict[str, Sender] = {}
         self._inboxes: list[tuple[Inbox, Feed[Any]]] = []
+        self.keys_received: set[str] = set()
         self._run_states = self.subscribe(keys.RUN_STATE)
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
@@ -75,6 +79,7 @@ class LiveLink:
         for t_ns in self._clock.ticks(self._period_s):
             for inbox, feed in self._inboxes:
                 for sample in inbox.poll():
+                    self.keys_received.add(sample.key)
                     feed.put(sample.key, Header.unpack(sample.attachment), sample.payload)
             yield t_ns
             if any(state.message.phase == pb.RunState.ENDED for state in self._run_states.take()):

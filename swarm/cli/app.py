@@ -11,6 +11,7 @@ from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
 from swarm.cli.reproduce import reproduce_command
 from swarm.cli.simulate import simulate_command
+from swarm.cli.trials import durations_command, trials_command
 from swarm.errors import UserError
 
 app = typer.Typer(
@@ -31,6 +32,8 @@ app.command("simulate")(simulate_command)
 app.command("reproduce")(reproduce_command)
 app.command("claims")(claims_command)
 app.command("analyze")(analyze_command)
+app.command("trials")(trials_command)
+app.command("durations")(durations_command)
 app.command("check")(check_command)
 
 

@@ -1,0 +1,157 @@
+"""`swarm trials`: many trials by the abstract engine; `swarm durations`, which feeds it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections import defaultdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from swarm.cli.output import print_json, require_extra
+from swarm.errors import UserError
+
+DEPLOYED = Path(__file__).parents[2] / "deploy" / "copies"
+COPIES = DEPLOYED / "best.csv"
+DURATIONS = DEPLOYED / "durations.csv"
+NOTE = (
+    "Algorithm 3 on measured durations, copies drawn from rendered ones; "
+    "a path that does not arrive counts as {cap}."
+)
+
+Json = Annotated[bool, typer.Option("--json", help="Print the results as one JSON object.")]
+
+
+def many_trials(
+    file: Path,
+    trials: int,
+    moves: int | None,
+    seed: int | None,
+    copies: Path,
+    durations: Path,
+    out: Path,
+    jobs: int,
+) -> dict[str, Any]:
+    """Run the trials, and write picture and tables into a new directory."""
+    require_extra("lab", "scipy", "polars", "matplotlib")
+    from swarm.experiment import Experiment
+    from swarm.experiments.robot_plots import first_trials, write_picture
+    from swarm.experiments.robot_trials import PAPER_TRIALS, run_trials, summary, write_tables
+
+    experiment = Experiment.load(file).changed(seed=seed, moves=moves)
+    directory = _new_directory(out)
+    many = run_trials(experiment, copies, durations, trials, jobs)
+    files = write_tables(many, directory) | {"picture": str(directory / "curves.png")}
+    note = NOTE.format(cap=experiment.learning.path_length_cap)
+    few = first_trials(many.curves, PAPER_TRIALS)
+    write_picture(few, many.curves, experiment.run.name, note, directory / "curves.png")
+    return {"experiment": experiment.run.name, "trials": trials, "conditions": summary(many), "files": files}
+
+
+def trials_command(
+    experiment: Annotated[Path, typer.Argument(help="An experiment file, such as deploy/sim/expert.toml.")],
+    trials: Annotated[int, typer.Option(min=1, help="Trials of each condition.")] = 100,
+    moves: Annotated[
+        int | None, typer.Option(help="Moves of each learner.", show_default="the file's")
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(help="The root of all randomness.", show_default="the file's")
+    ] = None,
+    copies: Annotated[
+        Path, typer.Option(help="Stored copies, made by `robot-agent collect-copies`.")
+    ] = COPIES,
+    durations: Annotated[
+        Path, typer.Option(help="Durations of moves, made by `swarm durations`.")
+    ] = DURATIONS,
+    out: Annotated[
+        Path | None, typer.Option(help="Where results go: a new directory.", show_default="runs/trials/NAME")
+    ] = None,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Trials at a time.", show_default="all cores")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Run many trials without wheels: the learning of the robots on measured durations and stored copies."""
+    out = out or Path("runs") / "trials" / experiment.stem
+    count = jobs or len(os.sched_getaffinity(0))
+    result = many_trials(experiment, trials, moves, seed, copies, durations, out, count)
+    if json:
+        print_json(result)
+    else:
+        typer.echo("\n".join(_lines(result)))
+
+
+def durations_command(
+    run: Annotated[list[Path], typer.Argument(help="Run directories or .mcap files.")],
+    out: Annotated[Path, typer.Option(help="A new CSV file.")] = DURATIONS,
+    json: Json = False,
+) -> None:
+    """Measure in logs how long moves and drives back take, for `swarm trials`."""
+    require_extra("lab", "mcap", "polars")
+    from swarm.experiments.durations import write_durations
+
+    seconds = _measured(run)
+    told = "seconds of driven moves by turn (eighths of a circle) and way, measured in a simulated run"
+    write_durations(seconds, out, told)
+    counts = {kind: len(found) for kind, found in seconds.items()}
+    if json:
+        print_json({"file": str(out), "measured": counts})
+    else:
+        typer.echo(f"wrote {out}: {sum(counts.values())} durations of {len(counts)} kinds")
+
+
+def _measured(runs: list[Path]) -> dict[str, list[float]]:
+    import polars as pl
+
+    from swarm.analysis.read_run import read_logs
+    from swarm.analysis.run_inputs import find_inputs
+    from swarm.experiments.durations import Step, measured
+    from swarm.geometry import Grid
+
+    goal = Grid(10, 10).goal
+    with tempfile.TemporaryDirectory() as folder:
+        tables = read_logs(find_inputs(runs).logs, Path(folder), False, lambda _: None).tables
+        moves = pl.read_parquet(tables["moves"]).sort("log", "publish_t_ns", maintain_order=True)
+        carries = pl.read_parquet(tables["carries"])
+    carried_s: dict[str, list[float]] = defaultdict(list)
+    for row in carries.iter_rows(named=True):
+        carried_s[f"{row['log']}/{row['robot']}"].append(row["publish_t_ns"] * 1e-9)
+    steps = (
+        Step(
+            f"{row['log']}/{row['robot']}",
+            row["action"],
+            row["blocked"],
+            row["next_state"] == goal,
+            row["duration_s"],
+            row["publish_t_ns"] * 1e-9,
+        )
+        for row in moves.iter_rows(named=True)
+    )
+    return measured(steps, carried_s)
+
+
+def _new_directory(out: Path) -> Path:
+    try:
+        out.mkdir(parents=True)
+    except FileExistsError as error:
+        raise UserError(f"{out} is there already: choose another --out") from error
+    except OSError as error:
+        raise UserError(f"{out}: cannot be made ({error.strerror}); choose another --out") from error
+    return out
+
+
+def _lines(result: dict[str, Any]) -> list[str]:
+    lines = []
+    for name, found in result["conditions"].items():
+        if "stays_low_from" in found:
+            at = ", ".join(
+                f"{move}: {mean} ±{half}" for move, (mean, half) in found["mean_and_half_interval"].items()
+            )
+            lines.append(
+                f"{name} ({found['trials']} trials): {at}; 12 or less from {found['stays_low_from']}"
+            )
+    copies = result["conditions"]["copies"]
+    lines.append(f"paths remembered: {copies['remembered']}, of which wrong: {copies['wrong']}")
+    return [*lines, *(f"wrote {path}" for path in result["files"].values())]
