@@ -81,12 +81,11 @@ class LockstepHub:
     def advance(self) -> None:
         """Send the next tick, and with it to each process what it listens to."""
         self.number += 1
-        ticks = {
-            name: pb.Tick(number=self.number, t_ns=self.number * self._tick_ns) for name in self._senders
-        }
+        start = pb.Tick(number=self.number, t_ns=self.number * self._tick_ns).SerializeToString()
+        items: dict[str, pb.Tick] = {}
         for item in self._to_deliver:
             for name in self._readers_of(item.key):
-                ticks[name].items.add(
+                items.setdefault(name, pb.Tick()).items.add(
                     key=item.key,
                     epoch=item.epoch,
                     sequence=item.sequence,
@@ -94,7 +93,10 @@ class LockstepHub:
                     payload=item.payload,
                 )
         self._to_deliver = []
-        self._frames = {name: tick.SerializeToString() for name, tick in ticks.items()}
+        # Serialized messages merge when they are joined: the common start is made once.
+        self._frames = dict.fromkeys(self._senders, start)
+        for name, tick in items.items():
+            self._frames[name] = start + tick.SerializeToString()
         for name, frame in self._frames.items():
             self._senders[name].put(frame)
 
@@ -130,7 +132,7 @@ class LockstepHub:
         found.sort()
         self._to_deliver = found
         own, self._own = self._own, []
-        return Batch(t_ns, sorted(found + own))
+        return Batch(t_ns, sorted(found + own) if own else found)
 
     def _readers_of(self, key: str) -> tuple[str, ...]:
         if key not in self._readers:

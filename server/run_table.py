@@ -23,15 +23,21 @@ class Pace:
         return ("--started-ns", str(self.started_ns), "--speed", str(self.speed))
 
 
-def run_table(experiment: Experiment, file: Path, endpoint: str, trial: int, pace: Pace) -> list[ProcessSpec]:
-    """The tracker bridge, and the robots divided over the experiment's number of processes."""
+def run_table(
+    experiment: Experiment, file: Path, endpoint: str, trial: int, pace: Pace, output: Path
+) -> list[ProcessSpec]:
+    """The tracker bridge, and the robots divided over the experiment's number of processes.
+
+    The processes of robots leave a list of all keys that they received (`output`/PROCESS.keys).
+    """
     run = experiment.run
     changed = ("--seed", str(run.seed), "--moves", str(run.moves), "--trial", str(trial))
     common = (str(file), "--connect", endpoint, *changed, *pace.arguments())
     specs = [ProcessSpec("tracker", "tracker_bridge", (*common, "--process", "tracker"))]
     for number, names in enumerate(_divided(experiment)):
         process = f"robots-{number}"
-        arguments = (*common, "--process", process, "--robot", ",".join(names))
+        heard = ("--keys", str(output / f"{process}.keys"))
+        arguments = (*common, "--process", process, "--robot", ",".join(names), *heard)
         specs.append(ProcessSpec(process, "robot_agent", arguments))
     return specs
 

@@ -49,7 +49,7 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
     def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:
         endpoint = f"tcp/127.0.0.1:{_free_port()}"
         pace = Pace(speed is None, speed or 1.0, time.monotonic_ns())
-        specs = run_table(experiment, file, endpoint, trial, pace)
+        specs = run_table(experiment, file, endpoint, trial, pace, output)
         cores = available_cores()
         with (
             keeping_to(cores[0]) if pace.lockstep else nullcontext(),

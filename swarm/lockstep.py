@@ -39,7 +39,7 @@ class LockstepLink:
         self._feeds: list[tuple[str, Feed[Any]]] = []
         self._routes: dict[str, tuple[Feed[Any], ...]] = {}
         self._sequencer = Sequencer()
-        self._items: list[pb.Item] = []
+        self._message = pb.Done(process=process)
         self._answer = b""
         self._number = 0
         self._t_ns = 0
@@ -55,7 +55,7 @@ class LockstepLink:
         key = topic.key(robot)
         number = self._sequencer.following(key)
         payload = message.SerializeToString()
-        self._items.append(pb.Item(key=key, epoch=EPOCH, sequence=number, t_ns=self._t_ns, payload=payload))
+        self._message.items.add(key=key, epoch=EPOCH, sequence=number, t_ns=self._t_ns, payload=payload)
 
     def ticks(self) -> Iterator[int]:
         while not (tick := self._next_tick()).end:
@@ -106,8 +106,10 @@ class LockstepLink:
             feed.put(item.key, Header(item.epoch, item.sequence, item.t_ns), item.payload)
 
     def _answer_to(self, number: int) -> bytes:
-        items, self._items = self._items, []
-        return pb.Done(process=self._process, number=number, items=items).SerializeToString()
+        self._message.number = number
+        answer = self._message.SerializeToString()
+        del self._message.items[:]
+        return answer
 
     def _send_answer(self) -> None:
         if self._answer:
