@@ -22,6 +22,7 @@ class LocalLink:
     def __init__(self) -> None:
         self.t_ns = 0
         self.published: list[tuple[str, Any]] = []
+        self.keys_received: set[str] = set()
         self._feeds: list[tuple[str, Feed[Any]]] = []
         self._sequencer = Sequencer()
 

@@ -70,7 +70,7 @@ class Watch:
         self._stood = self._stood or own_pose
         if self._stood.distance_m(own_pose) > PUSHED_M:
             self.failed = "the observer was pushed"
-        elif t_ns >= self._due_ns:
+        elif self._due_ns <= t_ns < self._ends_ns:
             self._due_ns += self._period_ns
             self._take(self._camera.capture(t_ns), own_pose, t_ns)
         return self._turn_rad_per_s(own_pose)
