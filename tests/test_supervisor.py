@@ -78,7 +78,7 @@ def test_an_orderly_end_waits_for_everyone(code: Path, tmp_path: Path) -> None:
 
 def test_processes_are_out_of_reach_of_the_terminal(code: Path, tmp_path: Path) -> None:
     """Ctrl-C goes to the server alone, which ends the run in order."""
-    program = "import os; print(os.getsid(0) == os.getpid())"
+    program = "import os; print(os.getpgid(0) == os.getpid())"
     with Supervisor([spec(code, "a", program)], tmp_path / "output"):
         pass
     assert (tmp_path / "output" / "a.log").read_text() == "True\n"
