@@ -130,7 +130,7 @@ class LockstepHub:
         t_ns = self.number * self._tick_ns
         found = [LogItem(item.key, item.epoch, item.sequence, item.t_ns, item.payload) for item in items]
         found.sort()
-        self._to_deliver = found
+        self._to_deliver = list(found)
         own, self._own = self._own, []
         return Batch(t_ns, sorted(found + own) if own else found)
 

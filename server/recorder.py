@@ -42,6 +42,7 @@ class Recorder:
         self._writer.start(profile="", library="swarm-runtime")
         self._schemas: dict[str, int] = {}
         self._channels: dict[tuple[str, int], int | None] = {}
+        self._views: dict[str, int] = {}
         for name, values in metadata.items():
             self._writer.add_metadata(name, dict(values))
 
@@ -54,6 +55,18 @@ class Recorder:
                     channel, batch.t_ns, item.payload, item.publish_t_ns, item.sequence & 0xFFFFFFFF
                 )
                 self.messages += 1
+
+    def write_view(self, topic: str, message: Message, t_ns: int) -> None:
+        """Append a message that the server made for viewers."""
+        number = self._views.get(topic, 0) + 1
+        self._views[topic] = number
+        if (topic, 0) not in self._channels:
+            schema = self._schema(type(message))
+            made = {"made_by": "server"}
+            self._channels[topic, 0] = self._writer.register_channel(topic, "protobuf", schema, made)
+        channel = self._channels[topic, 0]
+        assert channel is not None
+        self._writer.add_message(channel, t_ns, message.SerializeToString(deterministic=True), t_ns, number)
 
     def flush(self) -> None:
         """End the chunk and hand everything to the operating system: a killed server loses none of it."""
@@ -91,12 +104,19 @@ class Recorder:
 
 
 def _descriptor_set(file: Any) -> FileDescriptorSet:
-    """A schema file and everything that it imports, dependencies first."""
-    found = FileDescriptorSet()
-    for dependency in file.dependencies:
-        found.file.extend(_descriptor_set(dependency).file)
-    file.CopyToProto(found.file.add())
-    return found
+    """A schema file and everything that it imports, dependencies first and each once."""
+    found: dict[str, Any] = {}
+
+    def visit(one: Any) -> None:
+        for dependency in one.dependencies:
+            visit(dependency)
+        found[one.name] = one
+
+    visit(file)
+    files = FileDescriptorSet()
+    for one in found.values():
+        one.CopyToProto(files.file.add())
+    return files
 
 
 def digest(paths: Iterable[Path]) -> str:

@@ -19,6 +19,7 @@ from server.recorder import Recorder, digest
 from server.run_directory import RunDirectory
 from server.stage import SetStage
 from server.trial import Trial, TrialResult
+from server.views import Views
 from swarm.experiment import Experiment
 
 
@@ -60,7 +61,7 @@ class Run:
                 self.directory.log(trial), metadata(self.experiment, file, trial, self.versions)
             )
             health = Health(conductor.event)
-            return Trial(stage, conductor, recorder, health, self.progress.show).run()
+            return Trial(stage, conductor, recorder, health, Views(self.experiment), self.progress.show).run()
 
     def _summary(self, wall_s: float) -> dict[str, Any]:
         logs = [self.directory.log(trial) for trial in self.trials]

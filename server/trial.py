@@ -9,6 +9,7 @@ from server.conductor import Conductor
 from server.health import Health
 from server.recorder import Recorder
 from server.stage import Stage
+from server.views import Views
 from swarm.messages import swarm_pb2 as pb
 
 BATCHES_AFTER_THE_END = 3
@@ -36,6 +37,7 @@ class Trial:
         conductor: Conductor,
         recorder: Recorder,
         health: Health,
+        views: Views,
         show: Callable[[Conductor, float], None],
     ) -> None:
         self._hub = stage.hub
@@ -43,6 +45,7 @@ class Trial:
         self._conductor = conductor
         self._recorder = recorder
         self._health = health
+        self._views = views
         self._show = show
         self._batches = 0
         self._began_ns: int | None = None
@@ -82,6 +85,8 @@ class Trial:
         self._conductor.step(batch)
         self._hub.advance()
         self._recorder.write(batch)
+        for topic, view in self._views.of(batch):
+            self._recorder.write_view(topic, view, batch.t_ns)
         self._health.step(batch)
         self._began_ns = batch.t_ns if self._began_ns is None else self._began_ns
         self._t_ns = batch.t_ns

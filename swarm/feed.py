@@ -33,7 +33,7 @@ class Feed(Generic[M]):
 
     def __init__(self, topic: Topic[M]) -> None:
         self.topic = topic
-        self._waiting: list[tuple[str, Header, bytes]] = []
+        self._waiting: dict[object, tuple[str, Header, bytes]] = {}
         self._seen: dict[str, tuple[int, int]] = {}
         self._believed: dict[str, tuple[int, int]] = {}
         self.duplicates = 0
@@ -51,14 +51,16 @@ class Feed(Generic[M]):
             self.duplicates += 1
             return
         self._seen[key] = number
-        if self.topic.delivery is Delivery.NEWEST:
-            self._waiting = [waiting for waiting in self._waiting if waiting[0] != key]
-        self._waiting.append((key, header, payload))
+        slot = key if self.topic.delivery is Delivery.NEWEST else (key, number)
+        self._waiting.pop(slot, None)
+        self._waiting[slot] = (key, header, payload)
 
     def take(self) -> list[Received[M]]:
         """Everything that waits, in order of arrival."""
-        waiting, self._waiting = self._waiting, []
-        checked = (self._checked(*message) for message in waiting)
+        if not self._waiting:
+            return []
+        waiting, self._waiting = self._waiting, {}
+        checked = (self._checked(*message) for message in waiting.values())
         return [received for received in checked if received is not None]
 
     def _checked(self, key: str, header: Header, payload: bytes) -> Received[M] | None:
