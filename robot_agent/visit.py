@@ -59,7 +59,8 @@ class Visit:
         if self.done:
             return STOPPED
         if self._watch is None:
-            self._begin_when_standing(own_pose, t_ns)
+            self._watch = self._begun_when_standing(own_pose, t_ns)
+        if self._watch is None:
             return STOPPED
         turn_rad_per_s = self._watch.step(own_pose, t_ns)
         if self._watch.ended(t_ns):
@@ -73,18 +74,17 @@ class Visit:
         if self._watch:
             self._watch.failed = "the observer was pushed"
 
-    def _begin_when_standing(self, own_pose: Pose | None, t_ns: int) -> None:
+    def _begun_when_standing(self, own_pose: Pose | None, t_ns: int) -> Watch | None:
         """The tracker confirms that the robot stands at the place before the watching begins."""
         if own_pose is None or self._place.distance_m(own_pose) > AT_PLACE_M:
             self._standing_since_ns = None
         elif self._standing_since_ns is None:
             self._standing_since_ns = t_ns
-        elif t_ns - self._standing_since_ns >= STANDS_FOR_NS:
-            eyes = self._eyes
-            self._watch = Watch(
-                eyes.camera, eyes.seer, t_ns, eyes.settings.duration_s, eyes.settings.frames_per_s
-            )
-            self._say(pb.Visit.WATCHING)
+        if self._standing_since_ns is None or t_ns - self._standing_since_ns < STANDS_FOR_NS:
+            return None
+        self._say(pb.Visit.WATCHING)
+        eyes = self._eyes
+        return Watch(eyes.camera, eyes.seer, t_ns, eyes.settings.duration_s, eyes.settings.frames_per_s)
 
     def _finish(self, watch: Watch) -> None:
         copied = self._copied(watch)

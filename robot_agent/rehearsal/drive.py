@@ -61,6 +61,14 @@ class TrackedRobot:
             self._estimator.fix(*fix)
         return self._estimator.pose(t_ns)
 
+    @property
+    def displaced(self) -> bool:
+        """Whether the tracker says that somebody carried or pushed the robot since it was last asked."""
+        displaced = self._estimator.displaced
+        if displaced:
+            self._estimator.reset()
+        return displaced
+
     def pose_age_s(self, t_ns: int) -> float:
         return self._estimator.age_s(t_ns)
 

@@ -90,7 +90,7 @@ class Stage:
         self.seer = Seer(
             experiment.visits.profile.value, model, learn_colour_table(frames, model, self._skirt)
         )
-        self.camera = SceneCamera(light, self._look)
+        self.camera = SceneCamera(light, self.look)
         self.shown: Callable[[int], Scene | None] = lambda _: Scene((self.room,))
         """What stands before the camera at a tick of the watching, counted from 0; None stalls the camera."""
         self._began_ns = 0
@@ -136,7 +136,7 @@ class Stage:
             speeds = geometry.wheel_speeds(0.0, turn_rad_per_s) if turn_rad_per_s else STOPPED
             self.robot.body.drive(speeds, t_ns)
 
-    def _look(self, t_ns: int) -> tuple[Pose, Scene, float] | None:
+    def look(self, t_ns: int) -> tuple[Pose, Scene, float] | None:
         """The observer's true pose, the scene and the turning speed that blurs it."""
         scene = self.shown((t_ns - self._began_ns) // self._tick_ns)
         if scene is None:
