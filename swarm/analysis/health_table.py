@@ -79,7 +79,7 @@ class HealthTable:
             "epoch": channel.epoch,
             "declared_hz": topic[0].rate_hz if topic else None,
             "rejected": self._rejected[channel],
-            "readable": channel.topic is not None,
+            "readable": channel.topic is not None or channel.is_for_viewers,
             **_numbers(np.concatenate(self._sequences[channel])),
             **_rates(np.concatenate(self._times[channel])),
         }

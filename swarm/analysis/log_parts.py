@@ -36,6 +36,11 @@ class LogChannel:
         return found[0] if found[0].message.DESCRIPTOR.full_name == self.schema else None
 
     @property
+    def is_for_viewers(self) -> bool:
+        """Whether the server made its messages out of others, for viewers to draw."""
+        return self.schema.startswith("foxglove.")
+
+    @property
     def sender(self) -> str:
         """The robot's id; "tracker", "server" or "run" for a key that names no robot."""
         found = topic_of(self.key)
