@@ -60,7 +60,7 @@ def test_a_killed_server_leaves_nobody_behind_and_a_log_up_to_there(server: Watc
     log = messages_in(server)
     assert log.recorded_messages is None, "there is no index"
     assert log.messages > 1000
-    for output in (server.out / "output" / "trial-000").iterdir():
+    for output in (server.out / "output" / "trial-000").glob("*.log"):
         assert "the server is gone" in output.read_text()
 
 
