@@ -111,7 +111,7 @@ def _speed(study: Study, results: Results) -> dict[str, float | None]:
     """Seconds that the engine took for the runs shown, and its steps a second of one core."""
     timings = _timings(study, results)
     seconds, steps = sum(timing.seconds for timing in timings), sum(timing.steps for timing in timings)
-    return {"seconds": round(seconds, 3), "steps_per_s": round(steps / seconds, 1) if seconds else None}
+    return {"seconds": round(seconds, 6), "steps_per_s": round(steps / seconds, 1) if seconds else None}
 
 
 def _timings(study: Study, results: Results) -> list[Timing]:
