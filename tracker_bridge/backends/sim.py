@@ -47,7 +47,7 @@ class _SimulatedView:
         )
 
     def _drawn(self) -> tuple[list[float], list[float]]:
-        """Noise of x, y and heading, and two uniform numbers; drawn in stacks, which is four times as fast."""
+        """Noise of x, y and heading, and two uniform numbers; drawn in stacks: four times as fast."""
         if not self._draws:
             noise = self._rng.standard_normal((STACK, 3)).tolist()
             self._draws = list(zip(noise, self._rng.random((STACK, 2)).tolist(), strict=True))
