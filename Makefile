@@ -5,7 +5,7 @@ READY := $(VENV)/.ready
 
 DEMO ?= runs/demo-$(shell date +%Y%m%d-%H%M%S)
 
-.PHONY: setup demo test test-all check messages clean
+.PHONY: setup demo test test-all check messages docs clean
 
 setup: $(READY)
 
@@ -35,3 +35,7 @@ clean:
 
 messages: setup
 	$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --mypy_out=. swarm/messages/swarm.proto
+
+# The parts of the documentation that are made from the code; tests compare them.
+docs: setup
+	$(BIN)/python -m swarm.keys_table > docs/keys.md

@@ -6,6 +6,7 @@ import argparse
 import math
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 from rich.console import Console
@@ -15,7 +16,7 @@ from server.run import Run
 from server.run_directory import RunDirectory
 from server.stage import laboratory, simulated
 from server.summary import print_summary
-from swarm.bus import BusSettings
+from swarm.bus import Bus, BusSettings
 from swarm.cli.output import print_json
 from swarm.experiment import Experiment
 from swarm.guard import guarded
@@ -32,14 +33,14 @@ def run(arguments: argparse.Namespace) -> None:
     leave_on_signals()
     experiment = Experiment.load(arguments.experiment)
     experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
-    directory = RunDirectory.create(arguments.out, experiment.run.name)
-    with RunProgress(experiment, Console(stderr=True)) as progress:
-        set_stage = simulated(experiment, arguments.speed, progress.warn)
+    with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_bus:
         trials: Sequence[int] = range(experiment.run.trials)
+        set_stage = simulated(experiment, arguments.speed, progress.warn)
         if arguments.listen:
-            trials = [arguments.trial]
             settings = BusSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
-            set_stage = laboratory(experiment, settings, progress.warn)
+            bus = open_bus.enter_context(Bus(settings))
+            trials, set_stage = [arguments.trial], laboratory(experiment, bus, progress.warn)
+        directory = RunDirectory.create(arguments.out, experiment.run.name)
         summary = Run(experiment, arguments.experiment, directory, set_stage, trials, progress).run()
     if arguments.json:
         print_json(summary)

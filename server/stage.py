@@ -53,9 +53,10 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
         cores = available_cores()
         with (
             keeping_to(cores[0]) if pace.lockstep else nullcontext(),
-            _bus(BusSettings(endpoint, hub=True)) as bus,
+            Bus(BusSettings(endpoint, hub=True)) as bus,
             Supervisor(specs, output, spread(len(specs), cores)) as supervisor,
         ):
+            claim(bus, _presence())
             if pace.lockstep:
                 processes = [spec.name for spec in specs]
                 tick_s = experiment.simulation.tick_s
@@ -70,23 +71,20 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
     return stage
 
 
-def laboratory(experiment: Experiment, settings: BusSettings, warn: Warn) -> SetStage:
+def laboratory(experiment: Experiment, bus: Bus, warn: Warn) -> SetStage:
     """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
 
     @contextmanager
     def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:  # noqa: ARG001
-        with _bus(settings) as bus:
-            hub = LiveHub(bus, unix_clock(), experiment, _nothing_to_check, warn)
-            yield Stage(hub, Operator(hub.publish, warn), _live_flush(experiment, 1.0), waits_for_people=True)
+        claim(bus, _presence())
+        hub = LiveHub(bus, unix_clock(), experiment, _nothing_to_check, warn)
+        yield Stage(hub, Operator(hub.publish, warn), _live_flush(experiment, 1.0), waits_for_people=True)
 
     return stage
 
 
-@contextmanager
-def _bus(settings: BusSettings) -> Iterator[Bus]:
-    with Bus(settings) as bus:
-        claim(bus, Presence("server", "server", socket.gethostname(), time.time_ns()))
-        yield bus
+def _presence() -> Presence:
+    return Presence("server", "server", socket.gethostname(), time.time_ns())
 
 
 def _live_flush(experiment: Experiment, speed: float) -> int:

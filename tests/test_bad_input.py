@@ -72,6 +72,7 @@ def test_a_busy_port_is_named(tmp_path: Path, experiment: Path) -> None:
         endpoint = f"tcp/127.0.0.1:{other.getsockname()[1]}"
         line = refused("server", experiment, "--out", tmp_path / "run", "--listen", endpoint)
     assert f"cannot listen on {endpoint}" in line
+    assert not (tmp_path / "run").exists()
 
 
 def test_an_unknown_robot_is_named(experiment: Path) -> None:
