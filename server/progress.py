@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from types import TracebackType
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from server.conductor import Conductor
 from swarm.experiment import Experiment
@@ -18,9 +19,9 @@ class RunProgress:
         self._experiment = experiment
         self._progress = Progress(
             TextColumn("{task.description}"),
-            BarColumn(),
-            MofNCompleteColumn(),
-            TextColumn("moves  {task.fields[learning]}"),
+            BarColumn(bar_width=10),
+            TextColumn("{task.completed:.0f}/{task.total:.0f}"),
+            TextColumn("{task.fields[learning]}"),
             TimeRemainingColumn(),
             console=console,
             disable=not console.is_terminal,
@@ -46,13 +47,19 @@ class RunProgress:
         self._progress.reset(self._task, description=f"trial {trial + 1}{of}", learning="")
 
     def show(self, conductor: Conductor, t_s: float) -> None:
-        """Moves of all learners, and the best path of each."""
-        learners = self._experiment.learners
-        best = ", ".join(f"{robot.id} {conductor.best_path[robot.id] or '-'}" for robot in learners)
-        made = sum(conductor.moves[robot.id] for robot in learners)
-        self._progress.update(
-            self._task, completed=made, learning=f"after {t_s / 3600:.1f} h  best path: {best}"
-        )
+        """Moves of all learners, the hours of their time, and the best path of each condition."""
+        made = sum(conductor.moves[robot.id] for robot in self._experiment.learners)
+        learning = f"{t_s / 3600:.1f} h, path: {', '.join(self._best_paths(conductor))}"
+        self._progress.update(self._task, completed=made, learning=learning)
+
+    def _best_paths(self, conductor: Conductor) -> Iterator[str]:
+        """The mean over a condition's learners; 0, before the first evaluation, is left out."""
+        lengths: dict[str, list[int]] = {}
+        for robot in self._experiment.learners:
+            if length := conductor.best_path[robot.id]:
+                lengths.setdefault(robot.group, []).append(length)
+        for condition, values in lengths.items():
+            yield f"{condition} {sum(values) / len(values):.0f}"
 
     def warn(self, text: str) -> None:
         """A line above the bar."""
