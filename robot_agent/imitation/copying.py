@@ -24,6 +24,8 @@ from swarm.learning.paths import ObservedPath
 
 MOST_POSITIONS = 5_000
 """A quarter of an hour at five frames a second; more is a fault, and would keep the robot from its work."""
+REST_KEPT = 2
+"""Positions of the first and the last rest to which lines are fitted: a long rest leaves a cloud of them."""
 MOST_LOST = 0.3
 """Larger a share of frames without the demonstrator, and nothing is copied."""
 
@@ -145,7 +147,7 @@ def _copy_by_stops(sightings: Sightings, smoothed: Smoothed, shown: Sequence[Res
 
 def _copy_by_lines(sightings: Sightings, shown: Sequence[Rest], cell_m: float) -> Copy:
     within = np.zeros(len(sightings), dtype=np.bool_)
-    within[shown[0].first : shown[-1].last + 1] = True
+    within[max(shown[0].first, shown[0].last - REST_KEPT) : shown[-1].first + REST_KEPT + 1] = True
     segments = fit_segments(sightings.where(within), cell_m)
     snapped = [snap(segment, cell_m) for segment in segments]
     moves = [CopiedMove(move, 0.0) for move, cells in snapped for _ in range(cells)]

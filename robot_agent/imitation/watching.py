@@ -20,6 +20,8 @@ MOST_REPEATED_FRAMES = 4
 """Noise makes any two frames of a living camera differ."""
 MOST_MISSING_FRAMES = 5
 PUSHED_M = 0.03
+VAGUE_M = 0.09
+"""Three quarters of a cell: a sighting whose range is less sure does not show whether a move was made."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,8 +79,8 @@ class Watch:
 
     @property
     def positions(self) -> list[ObservedPosition]:
-        """Where the demonstrator was seen, in order of time."""
-        return [looked.position for looked in self.looks if looked.position]
+        """Where the demonstrator was seen, in order of time; half hidden and far away it was not."""
+        return [looked.position for looked in self.looks if looked.position and not _is_vague(looked.answer)]
 
     def commonest_reason(self) -> str:
         """Why the demonstrator was most often not seen; empty if it always was."""
@@ -128,3 +130,7 @@ class Watch:
             return 0.0
         wanted = FOLLOW_GAIN_PER_S * error_rad
         return max(-FASTEST_TURN_RAD_PER_S, min(FASTEST_TURN_RAD_PER_S, wanted))
+
+
+def _is_vague(answer: Sighting | NotSeen) -> bool:
+    return isinstance(answer, Sighting) and answer.cut_off and answer.range_sd_m > VAGUE_M
