@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from swarm.cli.trials import _measured
+from swarm.cli.durations import measured_in
 from swarm.errors import UserError
 from swarm.experiments.durations import (
     KINDS,
@@ -67,7 +67,7 @@ def test_a_drive_back_with_a_visit_does_not_count() -> None:
 
 def test_a_log_is_measured(small_run: SmallRun) -> None:
     """An expert's SE moves without a turn take 1.9 to 2.2 s, as the full simulation shows."""
-    found = _measured([small_run.directory])
+    found = measured_in([small_run.directory])
     assert sum(map(len, found.values())) > 40
     assert np.median(found["turn0-diagonal"]) == pytest.approx(2.0, abs=0.2)
     assert set(found) <= set(KINDS)

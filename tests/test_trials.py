@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from swarm.cli.trials import COPIES, DURATIONS
+from swarm.cli.durations import DURATIONS
+from swarm.cli.trials import COPIES
 from swarm.experiment import Experiment
 from swarm.experiments.robot_trials import run_trials, summary
 from tests.conftest import SmallRun

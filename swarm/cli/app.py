@@ -9,9 +9,10 @@ import typer
 from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
+from swarm.cli.durations import durations_command
 from swarm.cli.reproduce import reproduce_command
 from swarm.cli.simulate import simulate_command
-from swarm.cli.trials import durations_command, trials_command
+from swarm.cli.trials import trials_command
 from swarm.errors import UserError
 
 app = typer.Typer(

@@ -1,25 +1,27 @@
-"""`swarm trials`: many trials by the abstract engine; `swarm durations`, which feeds it."""
+"""`swarm trials`: many trials of an experiment by the abstract engine."""
 
 from __future__ import annotations
 
 import os
 import tempfile
-from collections import defaultdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from swarm.cli.durations import DURATIONS
 from swarm.cli.output import print_json, require_extra
 from swarm.errors import UserError
 
-DEPLOYED = Path(__file__).parents[2] / "deploy" / "copies"
-COPIES = DEPLOYED / "best.csv"
-DURATIONS = DEPLOYED / "durations.csv"
+if TYPE_CHECKING:
+    from swarm.analysis.curves import Curves
+
+COPIES = DURATIONS.parent / "best.csv"
 NOTE = (
     "Algorithm 3 on measured durations, copies drawn from rendered ones; "
     "a path that does not arrive counts as {cap}."
 )
+FULL_NOTE = " Left: the full simulation, with rendered cameras."
 
 Json = Annotated[bool, typer.Option("--json", help="Print the results as one JSON object.")]
 
@@ -31,6 +33,7 @@ def many_trials(
     seed: int | None,
     copies: Path,
     durations: Path,
+    full: list[Path],
     out: Path,
     jobs: int,
 ) -> dict[str, Any]:
@@ -41,13 +44,28 @@ def many_trials(
     from swarm.experiments.robot_trials import PAPER_TRIALS, run_trials, summary, write_tables
 
     experiment = Experiment.load(file).changed(seed=seed, moves=moves)
+    of_full = _curves_of(full) if full else None
     directory = _new_directory(out)
     many = run_trials(experiment, copies, durations, trials, jobs)
     files = write_tables(many, directory) | {"picture": str(directory / "curves.png")}
-    note = NOTE.format(cap=experiment.learning.path_length_cap)
-    few = first_trials(many.curves, PAPER_TRIALS)
+    note = NOTE.format(cap=experiment.learning.path_length_cap) + (FULL_NOTE if of_full else "")
+    few = of_full or first_trials(many.curves, PAPER_TRIALS)
     write_picture(few, many.curves, experiment.run.name, note, directory / "curves.png")
     return {"experiment": experiment.run.name, "trials": trials, "conditions": summary(many), "files": files}
+
+
+def _curves_of(runs: list[Path]) -> dict[str, Curves]:
+    """The learning curves in the logs of a full simulation."""
+    import polars as pl
+
+    from swarm.analysis.read_run import read_logs
+    from swarm.analysis.run_curves import run_curves
+    from swarm.analysis.run_inputs import find_inputs
+
+    require_extra("lab", "mcap")
+    with tempfile.TemporaryDirectory() as folder:
+        tables = read_logs(find_inputs(runs).logs, Path(folder), False, lambda _: None).tables
+        return run_curves(pl.read_parquet(tables["best_paths"])).curves
 
 
 def trials_command(
@@ -65,6 +83,13 @@ def trials_command(
     durations: Annotated[
         Path, typer.Option(help="Durations of moves, made by `swarm durations`.")
     ] = DURATIONS,
+    full: Annotated[
+        list[Path] | None,
+        typer.Option(
+            help="A run of the full simulation, for the picture on the left.",
+            show_default="the first 4 trials",
+        ),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Where results go: a new directory.", show_default="runs/trials/NAME")
     ] = None,
@@ -76,60 +101,11 @@ def trials_command(
     """Run many trials without wheels: the learning of the robots on measured durations and stored copies."""
     out = out or Path("runs") / "trials" / experiment.stem
     count = jobs or len(os.sched_getaffinity(0))
-    result = many_trials(experiment, trials, moves, seed, copies, durations, out, count)
+    result = many_trials(experiment, trials, moves, seed, copies, durations, full or [], out, count)
     if json:
         print_json(result)
     else:
         typer.echo("\n".join(_lines(result)))
-
-
-def durations_command(
-    run: Annotated[list[Path], typer.Argument(help="Run directories or .mcap files.")],
-    out: Annotated[Path, typer.Option(help="A new CSV file.")] = DURATIONS,
-    json: Json = False,
-) -> None:
-    """Measure in logs how long moves and drives back take, for `swarm trials`."""
-    require_extra("lab", "mcap", "polars")
-    from swarm.experiments.durations import write_durations
-
-    seconds = _measured(run)
-    told = "seconds of driven moves by turn (eighths of a circle) and way, measured in a simulated run"
-    write_durations(seconds, out, told)
-    counts = {kind: len(found) for kind, found in seconds.items()}
-    if json:
-        print_json({"file": str(out), "measured": counts})
-    else:
-        typer.echo(f"wrote {out}: {sum(counts.values())} durations of {len(counts)} kinds")
-
-
-def _measured(runs: list[Path]) -> dict[str, list[float]]:
-    import polars as pl
-
-    from swarm.analysis.read_run import read_logs
-    from swarm.analysis.run_inputs import find_inputs
-    from swarm.experiments.durations import Step, measured
-    from swarm.geometry import Grid
-
-    goal = Grid(10, 10).goal
-    with tempfile.TemporaryDirectory() as folder:
-        tables = read_logs(find_inputs(runs).logs, Path(folder), False, lambda _: None).tables
-        moves = pl.read_parquet(tables["moves"]).sort("log", "publish_t_ns", maintain_order=True)
-        carries = pl.read_parquet(tables["carries"])
-    carried_s: dict[str, list[float]] = defaultdict(list)
-    for row in carries.iter_rows(named=True):
-        carried_s[f"{row['log']}/{row['robot']}"].append(row["publish_t_ns"] * 1e-9)
-    steps = (
-        Step(
-            f"{row['log']}/{row['robot']}",
-            row["action"],
-            row["blocked"],
-            row["next_state"] == goal,
-            row["duration_s"],
-            row["publish_t_ns"] * 1e-9,
-        )
-        for row in moves.iter_rows(named=True)
-    )
-    return measured(steps, carried_s)
 
 
 def _new_directory(out: Path) -> Path:
