@@ -10,6 +10,8 @@ from typing import Any
 import polars as pl
 
 from swarm.analysis.analysis_directory import AnalysisDirectory
+from swarm.analysis.copied_paths import read_copying
+from swarm.analysis.copying_figures import copying_figures
 from swarm.analysis.log_identity import LogIdentity
 from swarm.analysis.read_run import LogContent, Reading, read_logs
 from swarm.analysis.run_comparison import compare_all
@@ -54,7 +56,8 @@ def analyze(request: Request, show: Callable[[int], object] = lambda _: None) ->
     reading = read_logs(inputs.logs, directory.tables, request.sampled, show)
     curves = run_curves(pl.read_parquet(reading.tables["best_paths"]))
     notes = [*inputs.notes, *_reading_notes(inputs, reading), *curves.notes]
-    summary = Summary(_title(inputs), reading, curves, compare_all(curves), request.threshold, notes)
+    copying = read_copying(reading.tables)
+    summary = Summary(_title(inputs), reading, curves, compare_all(curves), request.threshold, notes, copying)
     files = _write(directory, curves, summary)
     analysis = Analysis(summary, directory.path, files | reading.tables)
     directory.write_json("summary.json", analysis.as_json())
@@ -64,13 +67,19 @@ def analyze(request: Request, show: Callable[[int], object] = lambda _: None) ->
 def _write(directory: AnalysisDirectory, curves: RunCurves, summary: Summary) -> dict[str, Path]:
     means, trials = curve_table(curves), trial_table(curves)
     figure = plot_curves(curves, summary.title)
+    pictures = copying_figures(summary.copying)
+    drawn = {
+        name: directory.write(name, lambda path, picture=picture: save_png(picture, path))  # type: ignore[misc]
+        for name, picture in pictures.items()
+    }
     return {
         "curves.png": directory.write("curves.png", lambda path: save_png(figure, path)),
         "curves.csv": directory.write("curves.csv", means.write_csv),
         "curves.parquet": directory.write("curves.parquet", means.write_parquet),
         "trials.csv": directory.write("trials.csv", trials.write_csv),
         "trials.parquet": directory.write("trials.parquet", trials.write_parquet),
-        "report.md": directory.write_text("report.md", report(summary, "curves.png")),
+        **drawn,
+        "report.md": directory.write_text("report.md", report(summary, "curves.png", list(drawn))),
     }
 
 

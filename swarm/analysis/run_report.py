@@ -7,6 +7,7 @@ from typing import Any
 
 import polars as pl
 
+from swarm.analysis.copying_report import copying_section
 from swarm.analysis.run_comparison import LEVEL, Comparison, NoComparison
 from swarm.analysis.run_figures import interval_note
 from swarm.analysis.run_summary import Summary, health_totals
@@ -20,8 +21,8 @@ _LEGEND = (
 )
 
 
-def report(summary: Summary, figure: str) -> str:
-    """The whole page; `figure` is the picture's file name."""
+def report(summary: Summary, figure: str, copying_pictures: Sequence[str] = ()) -> str:
+    """The whole page; `figure` and `copying_pictures` are the pictures' file names."""
     sections = (
         f"# {summary.title}",
         f"![Best path length against moves]({figure})",
@@ -31,6 +32,7 @@ def report(summary: Summary, figure: str) -> str:
         _conditions(summary),
         _comparisons(summary.comparisons),
         _paths(summary),
+        copying_section(summary.copying, copying_pictures),
         _notes(summary),
         _logs(summary),
         _health(summary),

@@ -9,6 +9,7 @@ from typing import Any
 import polars as pl
 
 from swarm.analysis.area import mean_level
+from swarm.analysis.copied_paths import Copying
 from swarm.analysis.curves import Curves
 from swarm.analysis.read_run import LogContent, Reading
 from swarm.analysis.run_comparison import Comparison, NoComparison
@@ -30,6 +31,7 @@ class Summary:
     threshold: int
     """Path length, in moves, at which a learner counts as having found a good path."""
     notes: Sequence[str]
+    copying: Copying
 
     def conditions(self) -> dict[str, dict[str, Any]]:
         """condition -> how far and how well its learners came."""
@@ -42,6 +44,7 @@ class Summary:
             "cap": self.curves.cap,
             "threshold": self.threshold,
             "comparisons": [_comparison(found) for found in self.comparisons],
+            "copying": self.copying.as_json(),
             "health": health_totals(self.reading.health),
             "logs": [_log(log) for log in self.reading.logs],
             "notes": list(self.notes),

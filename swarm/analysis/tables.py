@@ -31,6 +31,9 @@ LEARNING: dict[Topic[Any], str] = {
     keys.RUN_STATE: "run_states",
     keys.STATUS: "statuses",
     keys.CARRY: "carries",
+    keys.VISIT: "visits",
+    keys.OBSERVATION: "observations",
+    keys.COPY_ERROR: "copy_errors",
 }
 """What is said about learning and about the run: small, always read."""
 SAMPLED: dict[Topic[Any], str] = {keys.POSE: "poses", keys.COMMAND: "commands", keys.TRUTH: "truths"}
