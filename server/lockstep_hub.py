@@ -40,6 +40,7 @@ class LockstepHub:
         tick_s: float,
         check: Callable[[], None],
         warn: Callable[[str], None],
+        ticks_per_exchange: int = 1,
         monotonic_s: Callable[[], float] = time.monotonic,
     ) -> None:
         self._inbox = bus.inbox(LOCKSTEP_DONE, Delivery.EVERY, wake_s=WAKE_S)
@@ -47,6 +48,7 @@ class LockstepHub:
             name: bus.sender(LOCKSTEP_TICK.format(process=name), Delivery.EVERY) for name in processes
         }
         self._tick_ns = round(tick_s * NS_PER_S)
+        self._ticks = ticks_per_exchange
         self._check = check
         self._warn = warn
         self._monotonic_s = monotonic_s
@@ -57,7 +59,12 @@ class LockstepHub:
         self._to_deliver: list[LogItem] = []
         self._frames: dict[str, bytes] = {}
         self.number = 0
-        """The tick that is under way."""
+        """The exchange that is under way: one tick, unless there are more to an exchange."""
+
+    @property
+    def t_ns(self) -> int:
+        """The run's time at the end of the exchange."""
+        return self.number * self._ticks * self._tick_ns
 
     def start(self) -> None:
         """Wait for every process's HELLO; the first tick answers it."""
@@ -72,16 +79,17 @@ class LockstepHub:
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         key = topic.key(robot)
-        t_ns = self.number * self._tick_ns
         number = self._sequencer.following(key)
-        item = LogItem(key, EPOCH, number, t_ns, message.SerializeToString())
+        item = LogItem(key, EPOCH, number, self.t_ns, message.SerializeToString())
         self._own.append(item)
         self._to_deliver.append(item)
 
     def advance(self) -> None:
         """Send the next tick, and with it to each process what it listens to."""
+        first_ns = self.t_ns + self._tick_ns
         self.number += 1
-        start = pb.Tick(number=self.number, t_ns=self.number * self._tick_ns).SerializeToString()
+        more_t_ns = range(first_ns + self._tick_ns, self.t_ns + 1, self._tick_ns)
+        start = pb.Tick(number=self.number, t_ns=first_ns, more_t_ns=more_t_ns).SerializeToString()
         items: dict[str, pb.Tick] = {}
         for item in self._to_deliver:
             for name in self._readers_of(item.key):
@@ -118,7 +126,7 @@ class LockstepHub:
 
     def unsent(self) -> Batch:
         own, self._own = self._own, []
-        return Batch(self.number * self._tick_ns, own)
+        return Batch(self.t_ns, own)
 
     def finish(self) -> None:
         """End every process's ticks."""
@@ -127,12 +135,11 @@ class LockstepHub:
             sender.put(end)
 
     def _batch(self, items: list[pb.Item]) -> Batch:
-        t_ns = self.number * self._tick_ns
         found = [LogItem(item.key, item.epoch, item.sequence, item.t_ns, item.payload) for item in items]
         found.sort()
         self._to_deliver = list(found)
         own, self._own = self._own, []
-        return Batch(t_ns, sorted(found + own) if own else found)
+        return Batch(self.t_ns, sorted(found + own) if own else found)
 
     def _readers_of(self, key: str) -> tuple[str, ...]:
         if key not in self._readers:

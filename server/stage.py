@@ -59,8 +59,10 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
             claim(bus, _presence())
             if pace.lockstep:
                 processes = [spec.name for spec in specs]
-                tick_s = experiment.simulation.tick_s
-                hub: Hub = LockstepHub(bus, processes, tick_s, supervisor.check, warn)
+                tempo = experiment.simulation
+                hub: Hub = LockstepHub(
+                    bus, processes, tempo.tick_s, supervisor.check, warn, tempo.ticks_per_exchange
+                )
                 flush_every = LOCKSTEP_BATCHES_BETWEEN_FLUSHES
             else:
                 clock = scaled_clock(pace.started_ns, pace.speed)

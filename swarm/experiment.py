@@ -160,6 +160,9 @@ class SimulationSettings:
 
     tick_s: Annotated[float, Between(0.01, 1)] = 0.1
     """Control period of every robot, and the length of a lockstep tick."""
+    ticks_per_exchange: Annotated[int, Between(1, 10)] = 1
+    """Ticks that the processes of a lockstep make before they exchange messages: 2 run nearly twice as
+    fast, and a pose then comes up to four ticks late instead of two."""
     processes: Annotated[int, Between(0, 1000)] = 0
     """Processes that host the robots; 0 gives each robot its own, as on hardware."""
 

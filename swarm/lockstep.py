@@ -59,10 +59,11 @@ class LockstepLink:
 
     def ticks(self) -> Iterator[int]:
         while not (tick := self._next_tick()).end:
-            self._t_ns = tick.t_ns
-            for item in tick.items:
-                self._deliver(item)
-            yield tick.t_ns
+            for t_ns, items in _steps(tick):
+                self._t_ns = t_ns
+                for item in items:
+                    self._deliver(item)
+                yield t_ns
             self._number = tick.number
             self._answer = self._answer_to(tick.number)
             self._send_answer()
@@ -114,6 +115,17 @@ class LockstepLink:
     def _send_answer(self) -> None:
         if self._answer:
             self._done.put(self._answer)
+
+
+def _steps(tick: pb.Tick) -> Iterator[tuple[int, list[pb.Item]]]:
+    """The times of an exchange, each with what arrives then: one exchange after it was published."""
+    times_ns = [tick.t_ns, *tick.more_t_ns]
+    exchange_ns = (times_ns[-1] - times_ns[0]) // max(1, len(times_ns) - 1) * len(times_ns)
+    waiting = list(tick.items)
+    for t_ns in times_ns[:-1]:
+        yield t_ns, [item for item in waiting if item.t_ns + exchange_ns <= t_ns]
+        waiting = [item for item in waiting if item.t_ns + exchange_ns > t_ns]
+    yield times_ns[-1], waiting
 
 
 def key_matches(expression: str, key: str) -> bool:

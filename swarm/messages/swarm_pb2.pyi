@@ -865,11 +865,16 @@ class Tick(_message.Message):
     T_NS_FIELD_NUMBER: _builtins.int
     END_FIELD_NUMBER: _builtins.int
     ITEMS_FIELD_NUMBER: _builtins.int
+    MORE_T_NS_FIELD_NUMBER: _builtins.int
     number: _builtins.int
     t_ns: _builtins.int
     end: _builtins.bool
     @_builtins.property
     def items(self) -> _containers.RepeatedCompositeFieldContainer[Global___Item]: ...
+    @_builtins.property
+    def more_t_ns(self) -> _containers.RepeatedScalarFieldContainer[_builtins.int]:
+        """the times of further steps before the answer"""
+
     def __init__(
         self,
         *,
@@ -877,10 +882,11 @@ class Tick(_message.Message):
         t_ns: _builtins.int = ...,
         end: _builtins.bool = ...,
         items: _abc.Iterable[Global___Item] | None = ...,
+        more_t_ns: _abc.Iterable[_builtins.int] | None = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["end", b"end", "items", b"items", "number", b"number", "t_ns", b"t_ns"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["end", b"end", "items", b"items", "more_t_ns", b"more_t_ns", "number", b"number", "t_ns", b"t_ns"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 
