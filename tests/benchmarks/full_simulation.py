@@ -53,10 +53,11 @@ def _processes() -> dict[str, int]:
     return found
 
 
-def measure(robots: int, processes: int, moves: int) -> dict[str, Any]:
+def measure(robots: int, processes: int, moves: int, ticks_per_exchange: int = 1) -> dict[str, Any]:
     """A run's speed between its first and last look."""
     with tempfile.TemporaryDirectory() as directory:
-        text = experiment_text(learners(robots), moves, f"[simulation]\nprocesses = {processes}")
+        simulation = f"[simulation]\nprocesses = {processes}\nticks_per_exchange = {ticks_per_exchange}"
+        text = experiment_text(learners(robots), moves, simulation)
         file = write_experiment(Path(directory), text)
         experiment = Experiment.load(file)
         watch = Watch(experiment, Console(stderr=True, quiet=True))
@@ -72,6 +73,7 @@ def measure(robots: int, processes: int, moves: int) -> dict[str, Any]:
     return {
         "robots": robots,
         "processes": processes,
+        "ticks_per_exchange": ticks_per_exchange,
         "ticks": round(ticks),
         "real_time_factor": round((t1_s - t0_s) / (wall1_s - wall0_s), 1),
         "real_time_factor_best_1000_ticks": round(best, 1),
@@ -87,7 +89,12 @@ def main() -> None:
     parser.add_argument("--moves", type=int, nargs=2, default=(300, 100), help="for 3 and for 50 robots")
     arguments = parser.parse_args()
     few, many = arguments.moves
-    print(json.dumps({"three": measure(3, 3, few), "fifty": measure(50, 2, many)}))
+    figures = {
+        "three": measure(3, 3, few),
+        "three_with_two_ticks_an_exchange": measure(3, 3, 2 * few, ticks_per_exchange=2),
+        "fifty": measure(50, 2, many),
+    }
+    print(json.dumps(figures))
 
 
 if __name__ == "__main__":
