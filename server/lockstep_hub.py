@@ -40,8 +40,8 @@ class LockstepHub:
         tick_s: float,
         check: Callable[[], None],
         warn: Callable[[str], None],
-        ticks_per_exchange: int = 1,
         monotonic_s: Callable[[], float] = time.monotonic,
+        ticks_per_exchange: int = 1,
     ) -> None:
         self._inbox = bus.inbox(LOCKSTEP_DONE, Delivery.EVERY, wake_s=WAKE_S)
         self._senders = {

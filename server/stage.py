@@ -61,7 +61,12 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
                 processes = [spec.name for spec in specs]
                 tempo = experiment.simulation
                 hub: Hub = LockstepHub(
-                    bus, processes, tempo.tick_s, supervisor.check, warn, tempo.ticks_per_exchange
+                    bus,
+                    processes,
+                    tempo.tick_s,
+                    supervisor.check,
+                    warn,
+                    ticks_per_exchange=tempo.ticks_per_exchange,
                 )
                 flush_every = LOCKSTEP_BATCHES_BETWEEN_FLUSHES
             else:
