@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -30,7 +31,7 @@ def test_the_number_of_processes_does_not_show(log: Path, tmp_path: Path) -> Non
 
 def test_the_tracker_keeps_its_rate(log: Path) -> None:
     captured = [pose.captured_t_ns for robot, pose in messages(log, "pose") if robot == "r0"]
-    steps = [later - sooner for sooner, later in zip(captured, captured[1:], strict=False)]
+    steps = [later - sooner for sooner, later in pairwise(captured)]
     assert steps.count(TICK_NS) > 0.9 * len(steps)
 
 
