@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,107 +9,122 @@ from typing import Any
 
 import polars as pl
 
+from swarm.analysis.copying_errors import ErrorKind, contains, error_kind
 from swarm.learning.edit_distance import edit_distance
 
 OF_PATH = ["log", "robot", "path"]
-PERFECT = "perfect"
+FIRST_R = 1.0
+"""R of a path that was never replayed (eq. 2 and 4)."""
 
 
 @dataclass(frozen=True)
 class RememberedPath:
-    """One path of one robot's memory. `real` and `copied` are the whole demonstration, of which `moves`
-    is the stretch that was remembered; both are None for a path that was given.
+    """One path of one robot's memory. `real` and `copied` are the moves of the whole demonstration, of
+    which `moves` is the stretch that was remembered; both are None if no copying error is known, as for a
+    path that was given.
     """
 
+    log: str
     condition: str
     robot: str
+    seed: int
     trial: int
     path: int
+    visit: int
+    """The visit that it was copied in; 0 for a path that was given."""
     moves: tuple[int, ...]
     source: str
+    known_from: int
+    """How many moves the robot had made when it remembered the path."""
+    known_for: int
+    """How many it has made since."""
     replays: int
-    ratio: float | None
-    """R after the last replay; None if there was none."""
+    ratio: float
+    """R after the last replay."""
     real: tuple[int, ...] | None
     copied: tuple[int, ...] | None
 
     @property
-    def error(self) -> str | None:
-        """The kind of copying error; None for a path that was given."""
+    def error(self) -> ErrorKind | None:
+        """The kind of the copying error; None if it is not known."""
         return None if self.real is None or self.copied is None else error_kind(self.copied, self.real)
 
-
-@dataclass(frozen=True)
-class Copying:
-    """What a run shows of copying; `failures` counts the reasons of visits that taught nothing."""
-
-    paths: Sequence[RememberedPath]
-    replays: pl.DataFrame
-    failures: Mapping[str, int]
-    visits: int
+    @property
+    def edit_distance(self) -> int | None:
+        return None if self.real is None or self.copied is None else edit_distance(self.copied, self.real)
 
     @property
-    def enacted(self) -> list[RememberedPath]:
-        """From the most to the least enacted (figures 27 and 28)."""
-        return sorted(self.paths, key=lambda path: -path.replays)
+    def really_made(self) -> bool | None:
+        """Whether the demonstrator really made the remembered moves, whatever else was miscopied."""
+        return None if self.real is None else contains(self.real, self.moves)
 
-    def as_json(self) -> dict[str, Any]:
-        judged = [path for path in self.paths if path.error]
-        return {
-            "visits": self.visits,
-            "failed_visits": dict(self.failures),
-            "paths": len(self.paths),
-            "errors": dict(Counter(str(path.error) for path in judged)),
-            "perfect": _reinforced([path for path in judged if path.error == PERFECT]),
-            "miscopied": _reinforced([path for path in judged if path.error != PERFECT]),
-        }
+    def row(self) -> dict[str, Any]:
+        """As a line of the table `copied_paths`."""
+        moves = {"moves": list(self.moves), "real": self.real and list(self.real)}
+        error = {"error": self.error, "edit_distance": self.edit_distance, "really_made": self.really_made}
+        return vars(self) | moves | {"copied": self.copied and list(self.copied)} | error
 
 
-def error_kind(copied: Sequence[int], real: Sequence[int]) -> str:
-    """perfect, one move extra, one move lost, one heading wrong, or several."""
-    distance = edit_distance(copied, real)
-    if distance > 1:
-        return "several"
-    kinds = {1: "one move extra", -1: "one move lost", 0: "one heading wrong"}
-    return kinds[len(copied) - len(real)] if distance else PERFECT
-
-
-def read_copying(tables: Mapping[str, Path]) -> Copying:
-    """Put the tables of paths, replays, visits and copying errors together."""
-    paths, replays = pl.read_parquet(tables["paths"]), pl.read_parquet(tables["replays"])
-    visits, errors = pl.read_parquet(tables["visits"]), pl.read_parquet(tables["copy_errors"])
-    counted = replays.sort("receive_t_ns").group_by(OF_PATH).agg(replays=pl.len(), ratio=pl.last("ratio"))
-    judged = errors.filter(pl.col("path") > 0).select(*OF_PATH, "true_moves", "copied_moves")
+def read_paths(tables: Mapping[str, Path]) -> list[RememberedPath]:
+    """From the tables of paths, replays, moves and, where there were visits, copying errors."""
+    paths = pl.read_parquet(tables["paths"]).unique(OF_PATH, keep="last", maintain_order=True)
+    replays = pl.read_parquet(tables["replays"]).sort("receive_t_ns", maintain_order=True)
+    counted = replays.group_by(OF_PATH).agg(replays=pl.len(), ratio=pl.last("ratio"))
     joined = (
-        paths.unique(OF_PATH, keep="last", maintain_order=True)
+        _with_moves(paths, pl.read_parquet(tables["moves"]))
         .join(counted, on=OF_PATH, how="left", maintain_order="left")
-        .join(judged.unique(OF_PATH), on=OF_PATH, how="left", maintain_order="left")
+        .join(_judged(tables), on=OF_PATH, how="left", maintain_order="left")
     )
-    done = visits.filter(pl.col("phase") == "DONE")
-    failures = Counter(done.filter(pl.col("path") == 0)["reason"].to_list())
-    return Copying([_path(row) for row in joined.iter_rows(named=True)], replays, failures, done.height)
+    return [_path(row) for row in joined.iter_rows(named=True)]
+
+
+def path_table(paths: Sequence[RememberedPath]) -> pl.DataFrame:
+    """A row for each path."""
+    moves = pl.List(pl.Int64)
+    schema: dict[str, Any] = {
+        "moves": moves,
+        "real": moves,
+        "copied": moves,
+        "error": pl.String,
+        "edit_distance": pl.Int64,
+    }
+    return pl.DataFrame([path.row() for path in paths], schema_overrides=schema, infer_schema_length=None)
+
+
+def _with_moves(paths: pl.DataFrame, moves: pl.DataFrame) -> pl.DataFrame:
+    """`known_from`: number of the robot's last move before a path; `last_move`: of its last move at all."""
+    by_robot = ["log", "robot"]
+    made = moves.select(*by_robot, "receive_t_ns", known_from="number").sort("receive_t_ns")
+    last = moves.group_by(by_robot).agg(last_move=pl.col("number").max())
+    return (
+        paths.sort("receive_t_ns", maintain_order=True)
+        .join_asof(made, on="receive_t_ns", by=by_robot, check_sortedness=False)
+        .join(last, on=by_robot, how="left", maintain_order="left")
+        .with_columns(pl.col("known_from", "last_move").fill_null(0))
+    )
+
+
+def _judged(tables: Mapping[str, Path]) -> pl.DataFrame:
+    """The real and the copied moves of every path that the server judged."""
+    if "copy_errors" not in tables:
+        return pl.DataFrame(schema=dict.fromkeys(OF_PATH[:2], pl.String) | {"path": pl.Int64, **_NO_MOVES})
+    errors = pl.read_parquet(tables["copy_errors"]).filter(pl.col("path") > 0)
+    return errors.select(*OF_PATH, *_NO_MOVES).unique(OF_PATH, keep="last", maintain_order=True)
+
+
+_NO_MOVES = {"true_moves": pl.List(pl.Int64), "copied_moves": pl.List(pl.Int64)}
 
 
 def _path(row: Mapping[str, Any]) -> RememberedPath:
+    origin = {name: row[name] for name in ("log", "condition", "robot", "seed", "trial", "path", "visit")}
     return RememberedPath(
-        row["condition"],
-        row["robot"],
-        row["trial"],
-        row["path"],
-        tuple(row["moves"]),
-        row["source"],
-        row["replays"] or 0,
-        row["ratio"],
-        None if row["true_moves"] is None else tuple(row["true_moves"]),
-        None if row["copied_moves"] is None else tuple(row["copied_moves"]),
+        **origin,
+        moves=tuple(row["moves"]),
+        source=row["source"],
+        known_from=row["known_from"],
+        known_for=row["last_move"] - row["known_from"],
+        replays=row["replays"] or 0,
+        ratio=FIRST_R if row["ratio"] is None else row["ratio"],
+        real=None if row["true_moves"] is None else tuple(row["true_moves"]),
+        copied=None if row["copied_moves"] is None else tuple(row["copied_moves"]),
     )
-
-
-def _reinforced(paths: Sequence[RememberedPath]) -> dict[str, Any]:
-    """How much the learning made of some paths."""
-    ratios = [path.ratio for path in paths if path.ratio is not None]
-    return {
-        "paths": len(paths),
-        "replays": sum(path.replays for path in paths),
-        "mean_ratio": sum(ratios) / len(ratios) if ratios else None,
-    }

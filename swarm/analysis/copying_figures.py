@@ -1,123 +1,147 @@
-"""Figures 27 to 29 for any run: paths enacted most and least, originals beside copies, R over time."""
+"""Figures 27 to 29 for any run: paths enacted most and least, and originals beside their copies."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
-import polars as pl
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
+from matplotlib.figure import Figure, SubFigure
 
-from swarm.analysis.copied_paths import PERFECT, Copying, RememberedPath
+from swarm.analysis.copied_paths import RememberedPath
+from swarm.analysis.copying import Copying, chosen_copies, least_enacted, most_enacted
+from swarm.analysis.copying_errors import ErrorKind, differences
+from swarm.analysis.path_drawing import (
+    Point,
+    Square,
+    draw_cells,
+    draw_moves,
+    moves_text,
+    places,
+    square_around,
+)
+from swarm.analysis.ratio_figure import plot_ratios
 from swarm.analysis.run_figures import COLOURS, GREY
-from swarm.geometry import Move
+from swarm.analysis.seen_positions import Seen
 
-SHOWN = 4
-ROBOTS_SHOWN = 4
+PERFECT, WRONG, UNJUDGED = COLOURS[0], COLOURS[1], GREY
+_SEEN = "#1a1a1a"
+_R_NOTE = "Moves are drawn from the ring on, a cell a move. R as in equation 4, after the last replay."
+_SEEN_NOTE = (
+    "Dots: where the observer saw the other robot. Orange: moves that were copied wrongly, or of which there "
+    "is no copy."
+)
 
 
 def copying_figures(copying: Copying) -> dict[str, Figure]:
-    """Every figure that the run has something for, by file name."""
+    """Every figure that there is something for, by file name."""
     found: dict[str, Figure] = {}
-    enacted = copying.enacted
-    if enacted:
-        found["most_enacted.png"] = plot_paths(enacted, "paths enacted most often")
-        found["least_enacted.png"] = plot_paths(enacted[::-1], "paths enacted least often")
-    if copies := plot_copies(copying):
-        found["copies.png"] = copies
-    if not copying.replays.is_empty():
-        found["ratios.png"] = plot_ratios(copying.replays)
+    if copying.paths:
+        found["most_enacted.png"] = plot_paths(most_enacted(copying), "Paths enacted most often")
+        found["least_enacted.png"] = plot_paths(least_enacted(copying), "Paths enacted least often")
+        found["ratios.png"] = plot_ratios(copying.paths, copying.replays, colour_of)
+    if copies := chosen_copies(copying.enacted):
+        found["copies.png"] = plot_copies(copies, copying)
     return found
 
 
+def colour_of(path: RememberedPath) -> str:
+    """Blue for a perfect copy, orange for a wrong one, grey for what was given or not judged."""
+    if path.error is None:
+        return UNJUDGED
+    return PERFECT if path.error is ErrorKind.PERFECT else WRONG
+
+
+def source_text(path: RememberedPath) -> str:
+    """How the robot came by a path."""
+    if path.error is None:
+        return "given" if path.source == "given" else "copied"
+    return "a perfect copy" if path.error is ErrorKind.PERFECT else f"copied with {_WITH[path.error]}"
+
+
+_WITH = {
+    ErrorKind.EXTRA: "one move extra",
+    ErrorKind.LOST: "one move lost",
+    ErrorKind.HEADING: "one heading wrong",
+    ErrorKind.SEVERAL: "several errors",
+}
+
+
 def plot_paths(paths: Sequence[RememberedPath], title: str) -> Figure:
-    """Remembered paths side by side, at relative positions, with their R and replays."""
-    shown = paths[:SHOWN]
-    figure = Figure(figsize=(2.6 * len(shown), 3.2), layout="constrained")
-    figure.suptitle(title, fontsize=11, fontweight="bold", x=0.02, ha="left")
-    for axes, path in zip(_row(figure, len(shown)), shown, strict=True):
-        _draw_moves(axes, path.moves, COLOURS[0])
-        ratio = "–" if path.ratio is None else f"{path.ratio:.2f}"
-        axes.set_title(f"{path.robot}, path {path.path}\n{path.replays:,} replays, R {ratio}", fontsize=8.5)
+    """Remembered paths side by side with their R and replays."""
+    figure = Figure(figsize=(max(2.9 * len(paths), 5.8), 4.1), layout="constrained")
+    figure.suptitle(title, fontsize=13, fontweight="bold", x=0.01, ha="left")
+    columns = figure.subplots(1, max(len(paths), 2), squeeze=False)[0]
+    lines = [places(path.moves) for path in paths]
+    side = max(square_around(line).side for line in lines)
+    for axes, path, line in zip(columns, paths, lines, strict=False):
+        draw_cells(axes, Square(square_around(line).middle, side))
+        draw_moves(axes, path.moves, [colour_of(path)] * len(path.moves))
+        _caption(axes, path)
+    for axes in columns[len(paths) :]:
+        axes.set_axis_off()
+    figure.supxlabel(_R_NOTE, x=0.01, ha="left", fontsize=8.5, color=GREY)
     return figure
 
 
-def plot_copies(copying: Copying) -> Figure | None:
-    """What the demonstrator did above, what was perceived below: the most enacted and the worst copied."""
-    shown = chosen_copies(copying)
-    if not shown:
-        return None
-    figure = Figure(figsize=(2.6 * len(shown), 5.4), layout="constrained")
-    figure.suptitle("original (above) and copy (below)", fontsize=11, fontweight="bold", x=0.02, ha="left")
-    rows = figure.subplots(2, len(shown), squeeze=False)
-    for place, path in enumerate(shown):
-        _draw_moves(rows[0][place], path.real or (), GREY)
-        _draw_moves(rows[1][place], path.copied or (), COLOURS[0] if path.error == PERFECT else COLOURS[1])
-        rows[0][place].set_title(f"{path.robot}, path {path.path}", fontsize=8.5)
-        rows[1][place].set_title(f"{path.error}, {path.replays:,} replays", fontsize=8.5)
+def _caption(axes: Axes, path: RememberedPath) -> None:
+    axes.set_title(
+        f"{_replays(path)}, R {path.ratio:.2f}", fontsize=11, fontweight="bold", loc="left", pad=20
+    )
+    axes.text(0, 1.025, f"{_name(path)}, known for {path.known_for:,} moves", **_small(axes), color=GREY)
+    axes.set_xlabel(source_text(path), fontsize=9.5, color=colour_of(path), loc="left")
+
+
+def _small(axes: Axes) -> dict[str, Any]:
+    return {"fontsize": 8.5, "transform": axes.transAxes, "va": "bottom"}
+
+
+def _replays(path: RememberedPath) -> str:
+    return f"{path.replays:,} {'replay' if path.replays == 1 else 'replays'}"
+
+
+def _name(path: RememberedPath) -> str:
+    trial = f", trial {path.trial}" if path.trial else ""
+    return f"{path.robot}{trial}, path {path.path}"
+
+
+def plot_copies(paths: Sequence[RememberedPath], copying: Copying) -> Figure:
+    """What the demonstrator really did on the left, what was perceived on the right, two copies a row."""
+    rows = (len(paths) + 1) // 2
+    figure = Figure(figsize=(11.6, 0.75 + 3.55 * rows), layout="constrained")
+    figure.suptitle("Original and perceived copy", fontsize=13, fontweight="bold", x=0.01, ha="left")
+    cases = figure.subfigures(rows, 2, squeeze=False, wspace=0.04).ravel()
+    for case, path in zip(cases, paths, strict=False):
+        _draw_case(case, path, copying.seen.get(path, ()))
+    figure.supxlabel(_SEEN_NOTE, x=0.01, ha="left", fontsize=8.5, color=GREY)
     return figure
 
 
-def chosen_copies(copying: Copying) -> list[RememberedPath]:
-    """The two most enacted copies, then the miscopied ones that were enacted most."""
-    judged = [path for path in copying.enacted if path.error]
-    miscopied = [path for path in judged if path.error != PERFECT]
-    return list(dict.fromkeys([*judged[:2], *miscopied]))[:SHOWN]
+def _draw_case(case: SubFigure, path: RememberedPath, seen: Seen) -> None:
+    real, copied = path.real or (), path.copied or ()
+    wrong = differences(copied, real)
+    title = f"{_name(path)}: {source_text(path)}, {_replays(path)}, R {path.ratio:.2f}"
+    case.suptitle(title, fontsize=10.5, fontweight="bold", x=0.02, ha="left")
+    left, right = case.subplots(1, 2)
+    shown = square_around(places(real)), square_around(places(copied), seen)
+    side = max(square.side for square in shown)
+    _draw_side(left, real, wrong.real, GREY, Square(shown[0].middle, side))
+    _draw_side(right, copied, wrong.copied, PERFECT, Square(shown[1].middle, side), seen)
+    left.set_xlabel(f"really made: {moves_text(real)}", fontsize=9, loc="left")
+    copy = f"perceived: {moves_text(copied)}\nremembered: {moves_text(path.moves)}"
+    right.set_xlabel(copy, fontsize=9, loc="left")
 
 
-def plot_ratios(replays: pl.DataFrame) -> Figure:
-    """R of every path of the first robots against the moves of the learner."""
-    robots = replays.select("log", "robot", "trial").unique(maintain_order=True).head(ROBOTS_SHOWN)
-    figure = Figure(figsize=(8.0, 1.2 + 1.8 * robots.height), layout="constrained")
-    rows = figure.subplots(robots.height, 1, sharex=True, squeeze=False)
-    for place, (log, robot, trial) in enumerate(robots.iter_rows()):
-        of_robot = replays.filter((pl.col("log") == log) & (pl.col("robot") == robot)).sort("receive_t_ns")
-        _draw_ratios(rows[place][0], of_robot)
-        rows[place][0].set_title(f"{robot}, trial {trial}", fontsize=9, loc="left")
-    rows[-1][0].set_xlabel("moves made by the learner")
-    return figure
-
-
-def _draw_ratios(axes: Axes, replays: pl.DataFrame) -> None:
-    for number, of_path in enumerate(replays.partition_by("path", maintain_order=True)):
-        moves, ratios = of_path["started_move"].to_list(), of_path["ratio"].to_list()
-        colour = COLOURS[number % len(COLOURS)]
-        axes.plot(moves, ratios, color=colour, linewidth=1.0, drawstyle="steps-post")
-        axes.annotate(
-            f" {of_path['path'][0]}", (moves[-1], ratios[-1]), color=colour, fontsize=7.5, va="center"
-        )
-    axes.set_ylim(0, 1.03)
-    axes.set_ylabel("R")
-    _frame(axes)
-
-
-def _row(figure: Figure, count: int) -> list[Axes]:
-    return list(figure.subplots(1, count, squeeze=False)[0])
-
-
-def _draw_moves(axes: Axes, moves: Sequence[int], colour: str) -> None:
-    """A list of moves from a start, in cells: east to the right, south down."""
-    columns, rows = [0], [0]
-    for move in moves:
-        columns.append(columns[-1] + Move(move).columns)
-        rows.append(rows[-1] + Move(move).rows)
-    axes.plot(columns, rows, color=colour, linewidth=1.8, marker="o", markersize=3)
-    axes.plot(0, 0, marker="o", markersize=7, markerfacecolor="white", markeredgecolor=colour)
-    side = max(max(columns) - min(columns), max(rows) - min(rows), 5) / 2 + 0.7
-    middle_column, middle_row = (max(columns) + min(columns)) / 2, (max(rows) + min(rows)) / 2
-    axes.set_xlim(middle_column - side, middle_column + side)
-    axes.set_ylim(middle_row + side, middle_row - side)
-    axes.set_aspect("equal")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MultipleLocator(1))
-        axis.set_ticklabels([])
-    axes.tick_params(length=0)
-    axes.grid(color="#ececec", linewidth=0.8)
-    _frame(axes)
-
-
-def _frame(axes: Axes) -> None:
-    axes.set_axisbelow(True)
-    for spine in axes.spines.values():
-        spine.set_color("#cccccc")
+def _draw_side(
+    axes: Axes,
+    moves: Sequence[int],
+    wrong: frozenset[int],
+    colour: str,
+    square: Square,
+    seen: Sequence[Point] = (),
+) -> None:
+    draw_cells(axes, square)
+    draw_moves(axes, moves, [WRONG if place in wrong else colour for place in range(len(moves))])
+    if seen:
+        east, south = zip(*seen, strict=True)
+        axes.scatter(east, south, s=5, color=_SEEN, linewidths=0, zorder=5, alpha=0.7)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+import math
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from swarm.analysis.log_reader import LogError, LogReader, open_log
-from swarm.experiment import Role
+from swarm.experiment import ArenaSettings, Role
 
 UNKNOWN = "unknown"
 
@@ -30,6 +32,8 @@ class LogIdentity:
     conditions: Mapping[str, str]
     """Of each robot."""
     learners: frozenset[str]
+    cell_m: float
+    """The side of a cell of the grids."""
 
     def condition(self, robot: str) -> str:
         """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""
@@ -58,6 +62,7 @@ def identify(path: Path) -> LogIdentity:
             commit=metadata.get("versions", {}).get("commit", UNKNOWN),
             conditions={robot: condition for robot, (_, condition) in words.items()},
             learners=frozenset(robot for robot, (role, _) in words.items() if role == Role.LEARNER.value),
+            cell_m=_cell_m(metadata.get("experiment", {}).get("toml", "")),
         )
     except (KeyError, ValueError) as error:
         reason = "does not say which run and trial it holds: was it recorded by swarm-server?"
@@ -69,6 +74,16 @@ def identify(path: Path) -> LogIdentity:
 def _role_and_condition(text: str) -> tuple[str, str]:
     role, condition = text.split(" ")
     return role, condition
+
+
+def _cell_m(experiment: str) -> float:
+    """Of the experiment's [arena]; the default where it says nothing that makes sense."""
+    default_m = ArenaSettings().cell_m
+    try:
+        cell_m = float(tomllib.loads(experiment).get("arena", {}).get("cell_m", default_m))
+    except (ValueError, TypeError, AttributeError):
+        return default_m
+    return cell_m if 0 < cell_m < math.inf else default_m
 
 
 def _count(text: str) -> int:

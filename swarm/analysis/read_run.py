@@ -13,7 +13,16 @@ from swarm.analysis.health_table import HealthTable
 from swarm.analysis.log_identity import LogIdentity
 from swarm.analysis.log_reader import Damage, LogReader
 from swarm.analysis.table_files import TableFiles
-from swarm.analysis.tables import LEARNING, TABLE_OF, Rejected, is_learning, is_tabled, rows
+from swarm.analysis.tables import (
+    LEARNING,
+    TABLE_OF,
+    WATCHING,
+    Rejected,
+    is_learning,
+    is_tabled,
+    rows,
+    table_names,
+)
 
 REJECTED_SHOWN = 100
 
@@ -45,20 +54,28 @@ def read_logs(
 
     `show` is told now and then how many more messages have been read.
     """
-    names = tuple(dict.fromkeys((TABLE_OF if sampled else LEARNING).values()))
-    files = TableFiles(folder, names)
+    files = TableFiles(folder, table_names(TABLE_OF if sampled else LEARNING | WATCHING))
     healths, contents = [], []
     try:
         for identity in logs:
             health, content = _read_log(identity, files, sampled, show)
             healths.append(health)
             contents.append(content)
-        tables = files.finish()
+        tables = _without_empty(files.finish(), table_names(WATCHING))
     finally:
         files.discard()
     health = pl.concat(healths)
     health.write_parquet(folder / "health.parquet")
     return Reading(tables | {"health": folder / "health.parquet"}, health, contents)
+
+
+def _without_empty(tables: dict[str, Path], names: Sequence[str]) -> dict[str, Path]:
+    """Remove some tables if all of them are without rows."""
+    if any(pl.scan_parquet(tables[name]).select(pl.len()).collect().item() for name in names):
+        return tables
+    for name in names:
+        tables[name].unlink()
+    return {name: path for name, path in tables.items() if name not in names}
 
 
 def _read_log(
@@ -71,7 +88,8 @@ def _read_log(
         bad = 0
         if part.payloads:
             found = rows(part, identity)
-            files.add(found)
+            for table in found.tables:
+                files.add(table)
             bad = len(found.rejected)
             rejected.extend(islice(found.rejected, max(0, REJECTED_SHOWN - len(rejected))))
         health.add(part, bad)

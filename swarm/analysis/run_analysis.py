@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import polars as pl
 
 from swarm.analysis.analysis_directory import AnalysisDirectory
-from swarm.analysis.copied_paths import read_copying
+from swarm.analysis.copied_paths import path_table
+from swarm.analysis.copying import Copying, read_copying
 from swarm.analysis.copying_figures import copying_figures
 from swarm.analysis.log_identity import LogIdentity
 from swarm.analysis.read_run import LogContent, Reading, read_logs
@@ -56,7 +58,7 @@ def analyze(request: Request, show: Callable[[int], object] = lambda _: None) ->
     reading = read_logs(inputs.logs, directory.tables, request.sampled, show)
     curves = run_curves(pl.read_parquet(reading.tables["best_paths"]))
     notes = [*inputs.notes, *_reading_notes(inputs, reading), *curves.notes]
-    copying = read_copying(reading.tables)
+    copying = read_copying(reading.tables, {str(log.path): log.cell_m for log in inputs.logs})
     summary = Summary(_title(inputs), reading, curves, compare_all(curves), request.threshold, notes, copying)
     files = _write(directory, curves, summary)
     analysis = Analysis(summary, directory.path, files | reading.tables)
@@ -66,21 +68,32 @@ def analyze(request: Request, show: Callable[[int], object] = lambda _: None) ->
 
 def _write(directory: AnalysisDirectory, curves: RunCurves, summary: Summary) -> dict[str, Path]:
     means, trials = curve_table(curves), trial_table(curves)
-    figure = plot_curves(curves, summary.title)
-    pictures = copying_figures(summary.copying)
-    drawn = {
-        name: directory.write(name, lambda path, picture=picture: save_png(picture, path))  # type: ignore[misc]
-        for name, picture in pictures.items()
-    }
+    drawn = _write_figures(directory, curves, summary)
     return {
-        "curves.png": directory.write("curves.png", lambda path: save_png(figure, path)),
+        **drawn,
         "curves.csv": directory.write("curves.csv", means.write_csv),
         "curves.parquet": directory.write("curves.parquet", means.write_parquet),
         "trials.csv": directory.write("trials.csv", trials.write_csv),
         "trials.parquet": directory.write("trials.parquet", trials.write_parquet),
-        **drawn,
-        "report.md": directory.write_text("report.md", report(summary, "curves.png", list(drawn))),
+        "report.md": directory.write_text("report.md", report(summary, "curves.png", drawn)),
+        **_write_paths(directory, summary.copying),
     }
+
+
+def _write_figures(directory: AnalysisDirectory, curves: RunCurves, summary: Summary) -> dict[str, Path]:
+    figures = {"curves.png": plot_curves(curves, summary.title)}
+    if summary.copying:
+        figures["curves_paper_axes.png"] = plot_curves(curves, summary.title, paper_axes=True)
+    figures |= copying_figures(summary.copying)
+    return {name: directory.write(name, partial(save_png, figure)) for name, figure in figures.items()}
+
+
+def _write_paths(directory: AnalysisDirectory, copying: Copying) -> dict[str, Path]:
+    """The table of remembered paths, if there are any."""
+    if not copying.paths:
+        return {}
+    tables = AnalysisDirectory(directory.tables)
+    return {"copied_paths": tables.write("copied_paths.parquet", path_table(copying.paths).write_parquet)}
 
 
 def _title(inputs: Inputs) -> str:

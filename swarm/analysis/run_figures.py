@@ -17,17 +17,28 @@ GREY = "#595959"
 DRAWN_POINTS = 1500
 BOLD_POINTS = 300
 LEGEND_COLUMNS = 3
+POINT_MOVES = 10
+"""A robot finds out its best path every so many moves."""
 
 
-def plot_curves(found: RunCurves, title: str) -> Figure:
-    """Mean best path length of each condition against moves, with its 95 % interval as a band."""
+def plot_curves(found: RunCurves, title: str, paper_axes: bool = False) -> Figure:
+    """Mean best path length of each condition against moves, with its 95 % interval as a band.
+
+    With `paper_axes` as in the paper's figures 25 and 26: against data points, of ten moves each.
+    """
     figure = Figure(figsize=(8.0, 5.0), layout="constrained")
     axes = figure.add_subplot()
     axes.axhline(found.cap, color=GREY, linewidth=0.8, linestyle=(0, (1, 3)))
     for place, curves in enumerate(found.curves.values()):
         _draw(axes, curves, COLOURS[place % len(COLOURS)])
     _scale(axes, found)
+    if paper_axes:
+        axes.set_ylim(0, found.cap * 1.04)
+        axes.xaxis.set_major_formatter(lambda moves, _: f"{moves / POINT_MOVES:,.0f}")
     _explain(axes, len(found.curves), title)
+    if paper_axes:
+        axes.set_xlabel("data points (ten state transitions each)", fontsize=10)
+        axes.set_ylabel("best path length", fontsize=10)
     figure.supxlabel(_note(found), x=0.01, ha="left", fontsize=8.5, color=GREY)
     return figure
 

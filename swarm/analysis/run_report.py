@@ -8,11 +8,12 @@ from typing import Any
 import polars as pl
 
 from swarm.analysis.copying_report import copying_section
+from swarm.analysis.markdown import table, text_number
+from swarm.analysis.path_drawing import moves_text
 from swarm.analysis.run_comparison import LEVEL, Comparison, NoComparison
 from swarm.analysis.run_figures import interval_note
 from swarm.analysis.run_summary import Summary, health_totals
 from swarm.analysis.windows import Window
-from swarm.geometry import Move
 
 _SHOWN = 20
 _LEGEND = (
@@ -21,7 +22,7 @@ _LEGEND = (
 )
 
 
-def report(summary: Summary, figure: str, copying_pictures: Sequence[str] = ()) -> str:
+def report(summary: Summary, figure: str, copying_pictures: Iterable[str] = ()) -> str:
     """The whole page; `figure` and `copying_pictures` are the pictures' file names."""
     sections = (
         f"# {summary.title}",
@@ -38,11 +39,6 @@ def report(summary: Summary, figure: str, copying_pictures: Sequence[str] = ()) 
         _health(summary),
     )
     return "\n\n".join(section for section in sections if section) + "\n"
-
-
-def text_number(value: float | None, digits: int = 1) -> str:
-    """A number as a person reads it; an en dash for none."""
-    return "–" if value is None else f"{value:,.{digits}f}"
 
 
 def condition_rows(summary: Summary) -> list[list[str]]:
@@ -77,7 +73,7 @@ def _condition_row(name: str, values: dict[str, Any]) -> list[str]:
 
 
 def _conditions(summary: Summary) -> str:
-    return f"## Learning\n\n{_table(condition_head(summary), condition_rows(summary))}\n\n{_LEGEND}"
+    return f"## Learning\n\n{table(condition_head(summary), condition_rows(summary))}\n\n{_LEGEND}"
 
 
 def _comparisons(comparisons: Sequence[Comparison | NoComparison]) -> str:
@@ -114,41 +110,24 @@ def _windows(windows: Sequence[Window]) -> str:
 
 def _paths(summary: Summary) -> str:
     """Remembered paths, with how often each was replayed and its last R."""
-    paths = pl.read_parquet(summary.reading.tables["paths"])
-    if paths.is_empty():
+    paths = summary.copying.enacted
+    if not paths:
         return ""
-    replays = pl.read_parquet(summary.reading.tables["replays"])
-    of_path = ["log", "robot", "path"]
-    counted = (
-        replays.sort("receive_t_ns").group_by(of_path).agg(replays=pl.len(), ratio=pl.col("ratio").last())
-    )
-    rows = (
-        paths.unique(of_path, keep="last", maintain_order=True)
-        .join(counted, on=of_path, how="left", maintain_order="left")
-        .sort("replays", descending=True, nulls_last=True)
-        .head(_SHOWN)
-    )
     head = ["condition", "robot", "seed", "trial", "path", "source", "replays", "R at the end"]
     body = [
         [
-            row["condition"],
-            row["robot"],
-            str(row["seed"]),
-            str(row["trial"]),
-            moves_text(row["moves"]),
-            row["source"],
-            f"{row['replays'] or 0:,}",
-            text_number(row["ratio"], 2),
+            path.condition,
+            path.robot,
+            str(path.seed),
+            str(path.trial),
+            moves_text(path.moves),
+            path.source,
+            f"{path.replays:,}",
+            text_number(path.ratio, 2),
         ]
-        for row in rows.iter_rows(named=True)
+        for path in paths[:_SHOWN]
     ]
-    title = f"## Paths\n\nThe {len(body)} most replayed of {paths.height}.\n\n"
-    return title + _table(head, body)
-
-
-def moves_text(moves: Iterable[int]) -> str:
-    """Compass moves in words, such as "SE SE E"."""
-    return " ".join(Move(move).name if 0 <= move < len(Move) else "?" for move in moves)
+    return f"## Paths\n\nThe {len(body)} most replayed of {len(paths)}.\n\n{table(head, body)}"
 
 
 def _notes(summary: Summary) -> str:
@@ -168,7 +147,7 @@ def _logs(summary: Summary) -> str:
         ]
         for log in summary.reading.logs
     ]
-    return "## Logs\n\n" + _table(["log", "run", "seed", "trial", "messages", "state", "sha256"], rows)
+    return "## Logs\n\n" + table(["log", "run", "seed", "trial", "messages", "state", "sha256"], rows)
 
 
 def _health(summary: Summary) -> str:
@@ -199,13 +178,8 @@ def _health(summary: Summary) -> str:
         "rejected",
     )
     rows = [[_cell(row[name]) for name in columns] for row in odd.head(_SHOWN).iter_rows(named=True)]
-    return f"{text}\n\n{_table(list(columns), rows)}"
+    return f"{text}\n\n{table(list(columns), rows)}"
 
 
 def _cell(value: Any) -> str:
     return text_number(value, 2) if value is None or isinstance(value, float) else str(value)
-
-
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(cell.replace('|', '/') for cell in line)} |" for line in lines)

@@ -9,7 +9,7 @@ from typing import Any
 import polars as pl
 
 from swarm.analysis.area import mean_level
-from swarm.analysis.copied_paths import Copying
+from swarm.analysis.copying import Copying
 from swarm.analysis.curves import Curves
 from swarm.analysis.read_run import LogContent, Reading
 from swarm.analysis.run_comparison import Comparison, NoComparison
@@ -32,6 +32,7 @@ class Summary:
     """Path length, in moves, at which a learner counts as having found a good path."""
     notes: Sequence[str]
     copying: Copying
+    """Says nothing of runs in which no path was remembered and no visit made."""
 
     def conditions(self) -> dict[str, dict[str, Any]]:
         """condition -> how far and how well its learners came."""
@@ -44,7 +45,7 @@ class Summary:
             "cap": self.curves.cap,
             "threshold": self.threshold,
             "comparisons": [_comparison(found) for found in self.comparisons],
-            "copying": self.copying.as_json(),
+            **({"copying": self.copying.as_json()} if self.copying else {}),
             "health": health_totals(self.reading.health),
             "logs": [_log(log) for log in self.reading.logs],
             "notes": list(self.notes),

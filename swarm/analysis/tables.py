@@ -1,12 +1,15 @@
 """Messages to tables: a row for each message, a column for each field, typed by the message's schema.
 
 Every row begins with where it comes from: `log`, `seed`, `trial`, `condition`, `robot`, `epoch`,
-`sequence`, and the times of publishing and of receipt in ns of the run's time.
+`sequence`, and the times of publishing and of receipt in ns of the run's time. A list of messages inside
+a message, such as an observation's looks, is a table of its own.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import polars as pl
@@ -16,6 +19,7 @@ from swarm import keys
 from swarm.analysis.columns import column
 from swarm.analysis.log_identity import LogIdentity
 from swarm.analysis.log_parts import LogChannel, Part
+from swarm.analysis.nested_tables import is_nested, nested_names, nested_table
 from swarm.keys import Topic
 from swarm.messages.checks import BadMessageError, decode
 
@@ -31,14 +35,17 @@ LEARNING: dict[Topic[Any], str] = {
     keys.RUN_STATE: "run_states",
     keys.STATUS: "statuses",
     keys.CARRY: "carries",
+}
+"""What is said about learning and about the run: small, always read."""
+WATCHING: dict[Topic[Any], str] = {
     keys.VISIT: "visits",
     keys.OBSERVATION: "observations",
     keys.COPY_ERROR: "copy_errors",
 }
-"""What is said about learning and about the run: small, always read."""
+"""What is said about visits; a run without visits has none of these tables."""
 SAMPLED: dict[Topic[Any], str] = {keys.POSE: "poses", keys.COMMAND: "commands", keys.TRUTH: "truths"}
 """What is sampled many times a second: nearly all of a log."""
-TABLE_OF = LEARNING | SAMPLED
+TABLE_OF = LEARNING | WATCHING | SAMPLED
 
 
 @dataclass(frozen=True)
@@ -52,16 +59,23 @@ class Rejected:
 
 @dataclass(frozen=True)
 class Rows:
-    """A part of a table, and what could not enter it."""
+    """A part of a table."""
 
     table: str
     frame: pl.DataFrame
+
+
+@dataclass(frozen=True)
+class PartRows:
+    """What a part of a log becomes: rows of its table and of the tables nested in it; what was rejected."""
+
+    tables: list[Rows]
     rejected: list[Rejected]
 
 
 def is_learning(channel: LogChannel) -> bool:
     """Whether a channel's messages enter one of the small tables."""
-    return channel.topic in LEARNING
+    return channel.topic in LEARNING or channel.topic in WATCHING
 
 
 def is_tabled(channel: LogChannel) -> bool:
@@ -69,24 +83,28 @@ def is_tabled(channel: LogChannel) -> bool:
     return channel.topic in TABLE_OF
 
 
-def rows(part: Part, identity: LogIdentity) -> Rows:
+def table_names(topics: Iterable[Topic[Any]]) -> tuple[str, ...]:
+    """The tables of some topics, each once, with those nested in them."""
+    names = ((TABLE_OF[topic], *nested_names(topic.message)) for topic in topics)
+    return tuple(dict.fromkeys(chain.from_iterable(names)))
+
+
+def rows(part: Part, identity: LogIdentity) -> PartRows:
     """The rows of one part, each message decoded and checked field by field."""
     topic = part.channel.topic
     if topic is None:
         raise ValueError(f"{part.channel.key} enters no table")
     messages, good, rejected = _decoded(part, topic.message)
-    columns = _origin(part, identity, good) | _fields(topic.message, messages)
-    return Rows(TABLE_OF[topic], pl.DataFrame(columns), rejected)
+    origin = pl.DataFrame(_origin(part, identity, good))
+    return PartRows(_tables(topic, origin, messages), rejected)
 
 
 def empty_table(table: str) -> pl.DataFrame:
     """A table without rows, with the columns that it would have."""
-    message = next(topic.message for topic, name in TABLE_OF.items() if name == table)
+    topic = next(topic for topic in TABLE_OF if table in table_names([topic]))
     texts = dict.fromkeys(("log", "condition", "robot"), pl.String)
-    numbers = ("seed", "trial", "epoch", "sequence", "publish_t_ns", "receive_t_ns")
-    origin = {name: pl.Series([], dtype=texts.get(name, pl.Int64)) for name in _ORIGIN}
-    origin |= {name: pl.Series([], dtype=pl.Int64) for name in numbers}
-    return pl.DataFrame({name: origin[name] for name in _ORIGIN} | _fields(message, []))
+    origin = pl.DataFrame({name: pl.Series([], dtype=texts.get(name, pl.Int64)) for name in _ORIGIN})
+    return next(found.frame for found in _tables(topic, origin, []) if found.table == table)
 
 
 _ORIGIN = (
@@ -145,5 +163,11 @@ def _origin(part: Part, identity: LogIdentity, good: slice | list[int]) -> dict[
     }
 
 
-def _fields(message_type: type[Message], messages: list[Message]) -> dict[str, pl.Series]:
-    return {field.name: column(field, messages) for field in message_type.DESCRIPTOR.fields}
+def _tables(topic: Topic[Any], origin: pl.DataFrame, messages: list[Message]) -> list[Rows]:
+    fields = [field for field in topic.message.DESCRIPTOR.fields if not is_nested(field)]
+    own = origin.with_columns(column(field, messages).alias(field.name) for field in fields)
+    nested = [
+        Rows(name, nested_table(origin, topic.message, messages, name))
+        for name in nested_names(topic.message)
+    ]
+    return [Rows(TABLE_OF[topic], own), *nested]
