@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -25,6 +27,7 @@ from swarm.analysis.run_figures import COLOURS, GREY
 from swarm.analysis.seen_positions import Seen
 
 PERFECT, WRONG, UNJUDGED = COLOURS[0], COLOURS[1], GREY
+CAPTION_LETTERS, CAPTION_LINES = 44, 2
 _SEEN = "#1a1a1a"
 _R_NOTE = "Moves are drawn from the ring on, a cell a move. R as in equation 4, after the last replay."
 _SEEN_NOTE = (
@@ -101,14 +104,13 @@ def _replays(path: RememberedPath) -> str:
 
 
 def _name(path: RememberedPath) -> str:
-    trial = f", trial {path.trial}" if path.trial else ""
-    return f"{path.robot}{trial}, path {path.path}"
+    return f"{path.robot}, trial {path.trial}, path {path.path}"
 
 
 def plot_copies(paths: Sequence[RememberedPath], copying: Copying) -> Figure:
     """What the demonstrator really did on the left, what was perceived on the right, two copies a row."""
     rows = (len(paths) + 1) // 2
-    figure = Figure(figsize=(11.6, 0.75 + 3.55 * rows), layout="constrained")
+    figure = Figure(figsize=(11.6, 0.75 + 3.7 * rows), layout="constrained")
     figure.suptitle("Original and perceived copy", fontsize=13, fontweight="bold", x=0.01, ha="left")
     cases = figure.subfigures(rows, 2, squeeze=False, wspace=0.04).ravel()
     for case, path in zip(cases, paths, strict=False):
@@ -120,16 +122,24 @@ def plot_copies(paths: Sequence[RememberedPath], copying: Copying) -> Figure:
 def _draw_case(case: SubFigure, path: RememberedPath, seen: Seen) -> None:
     real, copied = path.real or (), path.copied or ()
     wrong = differences(copied, real)
-    title = f"{_name(path)}: {source_text(path)}, {_replays(path)}, R {path.ratio:.2f}"
+    title = f"{_name(path)}: {_replays(path)}, R {path.ratio:.2f}"
     case.suptitle(title, fontsize=10.5, fontweight="bold", x=0.02, ha="left")
     left, right = case.subplots(1, 2)
     shown = square_around(places(real)), square_around(places(copied), seen)
     side = max(square.side for square in shown)
     _draw_side(left, real, wrong.real, GREY, Square(shown[0].middle, side))
     _draw_side(right, copied, wrong.copied, PERFECT, Square(shown[1].middle, side), seen)
-    left.set_xlabel(f"really made: {moves_text(real)}", fontsize=9, loc="left")
-    copy = f"perceived: {moves_text(copied)}\nremembered: {moves_text(path.moves)}"
-    right.set_xlabel(copy, fontsize=9, loc="left")
+    left.set_title("what was really done", fontsize=9.5, color=GREY, loc="left")
+    right.set_title(source_text(path), fontsize=9.5, color=colour_of(path), loc="left")
+    left.set_xlabel(_wrapped(f"done: {moves_text(real)}"), fontsize=9, loc="left")
+    copy = [f"perceived: {moves_text(copied)}", f"remembered: {moves_text(path.moves)}"]
+    right.set_xlabel("\n".join(map(_wrapped, copy)), fontsize=9, loc="left")
+
+
+def _wrapped(text: str) -> str:
+    """In lines, none of which ends between a number and its move."""
+    text = re.sub(r"(\d) ", "\\1\N{NO-BREAK SPACE}", text)
+    return "\n".join(textwrap.wrap(text, CAPTION_LETTERS, max_lines=CAPTION_LINES, placeholder=" …"))
 
 
 def _draw_side(

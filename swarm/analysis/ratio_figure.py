@@ -64,16 +64,21 @@ def plot_ratios(
 ) -> Figure:
     """A row for each of the first robots, a line for each of its paths, labelled at its end."""
     lines = ratio_lines(paths, replays)
-    robots = list(dict.fromkeys((line.path.log, line.path.robot) for line in lines))
+    robots = sorted({_learner(line) for line in lines})
     shown = robots[:ROBOTS_SHOWN]
-    figure = Figure(figsize=(8.0, 1.3 + 2.6 * len(shown)), layout="constrained")
+    figure = Figure(figsize=(8.0, 1.6 + 2.2 * len(shown)), layout="constrained")
     figure.suptitle("R of every path while learning", fontsize=13, fontweight="bold", x=0.01, ha="left")
     rows = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
     for axes, robot in zip(rows, shown, strict=True):
-        _draw(axes, [line for line in lines if (line.path.log, line.path.robot) == robot], colour_of)
+        _draw(axes, [line for line in lines if _learner(line) == robot], colour_of)
     rows[-1].set_xlabel("moves made by the learner", fontsize=10)
     figure.supxlabel(_note(len(robots)), x=0.01, ha="left", fontsize=8.5, color=GREY)
     return figure
+
+
+def _learner(line: RatioLine) -> tuple[int, int, str, str]:
+    path = line.path
+    return path.seed, path.trial, path.robot, path.log
 
 
 def _note(robots: int) -> str:
