@@ -72,7 +72,7 @@ _WITH = {
 
 def plot_paths(paths: Sequence[RememberedPath], title: str) -> Figure:
     """Remembered paths side by side with their R and replays."""
-    figure = Figure(figsize=(max(2.9 * len(paths), 5.8), 4.1), layout="constrained")
+    figure = Figure(figsize=(max(2.9 * len(paths), 5.8), 4.4), layout="constrained")
     figure.suptitle(title, fontsize=13, fontweight="bold", x=0.01, ha="left")
     columns = figure.subplots(1, max(len(paths), 2), squeeze=False)[0]
     lines = [places(path.moves) for path in paths]
@@ -91,8 +91,9 @@ def _caption(axes: Axes, path: RememberedPath) -> None:
     axes.set_title(
         f"{_replays(path)}, R {path.ratio:.2f}", fontsize=11, fontweight="bold", loc="left", pad=20
     )
-    axes.text(0, 1.025, f"{_name(path)}, known for {path.known_for:,} moves", **_small(axes), color=GREY)
-    axes.set_xlabel(source_text(path), fontsize=9.5, color=colour_of(path), loc="left")
+    axes.text(0, 1.025, _name(path), **_small(axes), color=GREY)
+    source = f"{source_text(path)},\nknown for {path.known_for:,} moves"
+    axes.set_xlabel(source, fontsize=9.5, color=colour_of(path), loc="left")
 
 
 def _small(axes: Axes) -> dict[str, Any]:
