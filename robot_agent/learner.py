@@ -62,10 +62,6 @@ class Learner:
         self._publish(keys.PATH, message)
         return self._paths
 
-    @property
-    def memory_full(self) -> bool:
-        return self._controller.memory.full
-
     def choose(self, state: int) -> int:
         action = self._controller.choose(state)
         self._report_ended(self._controller.ended)

@@ -147,12 +147,6 @@ class Bus:
         replies = self._session.liveliness().get(key)
         return sorted({str(reply.ok.key_expr) for reply in replies if reply.ok is not None})
 
-    @property
-    def endpoint_count(self) -> int:
-        """Transports to other processes that are up now."""
-        info = self._session.info
-        return len(info.routers_zid()) + len(info.peers_zid())
-
     def _start_waker(self, key: str, wake_s: float) -> None:
         """Zenoh's recv has no time-out: an empty sample to ourselves ends the wait instead."""
         publisher = self._session.declare_publisher(

@@ -6,6 +6,7 @@ watching, and what is copied is drawn from stored copies of what the demonstrato
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -43,7 +44,7 @@ class Shown:
     track: int
 
 
-class FastRobot:
+class FastRobot(ABC):
     """Moves from cell to cell in its own time, and can be watched."""
 
     def __init__(
@@ -92,13 +93,15 @@ class FastRobot:
             return self._experiment.learning.blocked_move_s
         return self._durations.drawn(kind_of(self._heading, action), self._duration_rng)
 
+    @abstractmethod
     def choose(self, state: int) -> int:
-        raise NotImplementedError
+        """The move to make from the centre of a cell."""
 
+    @abstractmethod
     def learn(
         self, state: int, action: int, next_state: int, duration_s: float, *, blocked: bool, arrived: bool
     ) -> None:
-        raise NotImplementedError
+        """Take in what came of the last choice."""
 
 
 class FastExpert(FastRobot):
