@@ -67,3 +67,7 @@ class ImitationMemory:
         remembered = RememberedPath(path)
         self.remembered.append(remembered)
         return remembered
+
+    @property
+    def full(self) -> bool:
+        return len(self.remembered) >= self.capacity
