@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
+
+from swarm.messages.header import Item
 
 
-class LogItem(NamedTuple):
-    """One message with its header, undecoded. Items sort by key, epoch and sequence."""
-
-    key: str
-    epoch: int
-    sequence: int
-    publish_t_ns: int
-    payload: bytes
-
-
-@dataclass(frozen=True, slots=True)
 class Batch:
     """Messages received by the run's time `t_ns`."""
 
-    t_ns: int
-    items: list[LogItem]
+    def __init__(self, t_ns: int, received: list[Item]) -> None:
+        self.t_ns = t_ns
+        self._received = received
+
+    @cached_property
+    def items(self) -> list[Item]:
+        """By key, epoch and sequence: who was quicker does not show. Sorted when first asked for."""
+        return sorted(self._received)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from server.batch import Batch
 from server.copy_errors import CopyErrors
 from server.hand import Hand, Publish
@@ -13,11 +11,9 @@ from swarm import keys
 from swarm.clock import NS_PER_S
 from swarm.errors import RunFailedError
 from swarm.experiment import Experiment
-from swarm.feed import Feed, Received
+from swarm.feed import Feed, Feeds, Received
 from swarm.geometry import Grid
-from swarm.keys import topic_of
 from swarm.messages import swarm_pb2 as pb
-from swarm.messages.header import Header
 
 RUN_STATE_PERIOD_NS = NS_PER_S
 STUCK_AFTER_NS = 600 * NS_PER_S
@@ -36,14 +32,9 @@ class Conductor:
         self._visit_words = Feed(keys.VISIT)
         self._observations = Feed(keys.OBSERVATION)
         self._truths = Feed(keys.TRUTH)
-        feeds: list[Feed[Any]] = [
-            self._moves,
-            self._best_paths,
-            self._paths,
-            self._visit_words,
-            self._observations,
-        ]
-        self._feeds = {feed.topic: feed for feed in feeds}
+        heard = (self._moves, self._best_paths, self._paths, self._visit_words, self._observations)
+        self._feeds = Feeds(heard)
+        self._feeds_while_watching = Feeds((*heard, self._truths))
         self._goal = Grid(experiment.arena.columns, experiment.arena.rows).goal
         self._visits = Visits(experiment, publish, hand)
         self._world = World(experiment, publish)
@@ -56,39 +47,30 @@ class Conductor:
         """Moves made so far, by robot."""
         self.best_path = {robot.id: 0 for robot in experiment.learners}
         """The newest best path length, by learner; 0 before the first."""
-        self.bad_messages = 0
 
     @property
     def ended(self) -> bool:
         """Whether every learner has made its moves and everyone has been told."""
         return self._ending
 
+    @property
+    def bad_messages(self) -> int:
+        """Messages refused so far."""
+        return self._feeds_while_watching.bad
+
     def step(self, batch: Batch) -> None:
         """Take in a batch; announce the run's state once a second and when it changes."""
-        self._listen(batch)
+        watching = self._visits.watching
+        (self._feeds_while_watching if watching else self._feeds).put(batch.items)
         for move in self._moves.take():
             self._note_move(move, batch.t_ns)
         for best in self._best_paths.take():
             self.best_path[best.robot] = best.message.length
         self._conduct_visits(batch.t_ns)
-        self.bad_messages = sum(feed.bad for feed in self._feeds.values())
         self._ending = all(self.moves[learner] >= self._experiment.run.moves for learner in self.best_path)
         if batch.t_ns >= self._state_due_ns or self._ending:
             self._state_due_ns = batch.t_ns + RUN_STATE_PERIOD_NS
             self.announce(pb.RunState.ENDED if self._ending else pb.RunState.RUNNING)
-
-    def _listen(self, batch: Batch) -> None:
-        """Sort the batch into the feeds; truths matter only while somebody watches."""
-        watching = bool(self._visits.watching)
-        for item in batch.items:
-            found = topic_of(item.key)
-            if found is None:
-                continue
-            feed = self._feeds.get(found[0])
-            if found[0] is keys.TRUTH and watching:
-                feed = self._truths
-            if feed:
-                feed.put(item.key, Header(item.epoch, item.sequence, item.publish_t_ns), item.payload)
 
     def _note_move(self, received: Received[pb.Move], t_ns: int) -> None:
         robot, move = received.robot, received.message

@@ -1,7 +1,8 @@
-"""Which core each process of a lockstep keeps to.
+"""Which core each process of a lockstep keeps to, and how it shares the core with the others.
 
 Every tick wakes every process once, and a wake-up across cores costs more than the work of an agent. A
-lockstep whose processes hop between cores runs at half the speed or less.
+lockstep whose processes hop between cores runs at half the speed or less. A process that is woken also
+waits until the one at work rests (SCHED_BATCH): else nearly every message interrupts somebody.
 """
 
 from __future__ import annotations
@@ -32,10 +33,15 @@ def spread(processes: int, cores: Sequence[int]) -> list[int]:
 
 @contextmanager
 def keeping_to(core: int) -> Iterator[None]:
-    """This thread and those that it starts inside the block keep to a core; afterwards this one is free."""
-    before = os.sched_getaffinity(0)
+    """This thread and what it starts inside the block keep to a core and interrupt nobody there.
+
+    Processes that are started inside inherit both; afterwards this thread is as it was.
+    """
+    cores, policy = os.sched_getaffinity(0), os.sched_getscheduler(0)
     os.sched_setaffinity(0, {core})
+    os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
     try:
         yield
     finally:
-        os.sched_setaffinity(0, before)
+        os.sched_setscheduler(0, policy, os.sched_param(0))
+        os.sched_setaffinity(0, cores)

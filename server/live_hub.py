@@ -8,13 +8,13 @@ from typing import TypeVar
 
 from google.protobuf.message import Message
 
-from server.batch import Batch, LogItem
+from server.batch import Batch
 from swarm.bus import Bus, Sample, Sender
 from swarm.clock import WallClock
 from swarm.experiment import Experiment
 from swarm.keys import Delivery, Topic
 from swarm.link import Sequencer
-from swarm.messages.header import Header
+from swarm.messages.header import Header, Item
 from swarm.presence import present
 
 M = TypeVar("M", bound=Message)
@@ -82,10 +82,10 @@ class LiveHub:
     def finish(self) -> None:
         """The run's state ENDED has told the robots already."""
 
-    def _items(self, samples: list[Sample]) -> Iterator[LogItem]:
+    def _items(self, samples: list[Sample]) -> Iterator[Item]:
         for sample in samples:
             header = Header.unpack(sample.attachment)
             if header is None or header.t_ns < 0:
                 self.without_header += 1
             else:
-                yield LogItem(sample.key, header.epoch, header.sequence, header.t_ns, sample.payload)
+                yield Item(sample.key, header, sample.payload)

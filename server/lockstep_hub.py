@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable
 from typing import TypeVar
 
 from google.protobuf.message import Message
 
-from server.batch import Batch, LogItem
+from server.batch import Batch
 from swarm.bus import Bus
 from swarm.clock import NS_PER_S
 from swarm.errors import RunFailedError
@@ -16,6 +17,7 @@ from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
 from swarm.link import Sequencer
 from swarm.lockstep import EPOCH, key_matches, parse_done
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages.header import Header, Item
 
 M = TypeVar("M", bound=Message)
 
@@ -28,9 +30,9 @@ GREETED_WITHIN_S = 60.0
 class LockstepHub:
     """Sends numbered ticks and waits for every process's answer.
 
-    What a process publishes in one tick reaches its subscribers with the next; the items of a tick are
-    ordered by key and sequence, so that neither load nor the number of processes shows. `check` raises
-    when a process has died; `warn` is told which process does not answer.
+    What a process publishes in one tick reaches its subscribers with the next; both the batch and the
+    process put a tick's items in order, so that neither load nor the number of processes shows. `check`
+    raises when a process has died; `warn` is told which process does not answer.
     """
 
     def __init__(
@@ -55,8 +57,8 @@ class LockstepHub:
         self._subscriptions: dict[str, list[str]] = {}
         self._readers: dict[str, tuple[str, ...]] = {}
         self._sequencer = Sequencer()
-        self._own: list[LogItem] = []
-        self._to_deliver: list[LogItem] = []
+        self._own: list[Item] = []
+        self._next_ticks = {name: pb.Tick() for name in processes}
         self._frames: dict[str, bytes] = {}
         self.number = 0
         """The exchange that is under way: one tick, unless there are more to an exchange."""
@@ -79,10 +81,10 @@ class LockstepHub:
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         key = topic.key(robot)
-        number = self._sequencer.following(key)
-        item = LogItem(key, EPOCH, number, self.t_ns, message.SerializeToString())
+        header = Header(EPOCH, self._sequencer.following(key), self.t_ns)
+        item = Item(key, header, message.SerializeToString())
         self._own.append(item)
-        self._to_deliver.append(item)
+        self._deliver(item)
 
     def advance(self) -> None:
         """Send the next tick, and with it to each process what it listens to."""
@@ -90,28 +92,18 @@ class LockstepHub:
         self.number += 1
         more_t_ns = range(first_ns + self._tick_ns, self.t_ns + 1, self._tick_ns)
         start = pb.Tick(number=self.number, t_ns=first_ns, more_t_ns=more_t_ns).SerializeToString()
-        items: dict[str, pb.Tick] = {}
-        for item in self._to_deliver:
-            for name in self._readers_of(item.key):
-                items.setdefault(name, pb.Tick()).items.add(
-                    key=item.key,
-                    epoch=item.epoch,
-                    sequence=item.sequence,
-                    t_ns=item.publish_t_ns,
-                    payload=item.payload,
-                )
-        self._to_deliver = []
-        # Serialized messages merge when they are joined: the common start is made once.
-        self._frames = dict.fromkeys(self._senders, start)
-        for name, tick in items.items():
+        for name, tick in self._next_ticks.items():
+            # Serialized messages merge when they are joined: the common start is made once.
             self._frames[name] = start + tick.SerializeToString()
-        for name, frame in self._frames.items():
-            self._senders[name].put(frame)
+            self._senders[name].put(self._frames[name])
+            del tick.items[:]
+        # Zenoh sends from a thread of its own, which would wait until this one rests.
+        os.sched_yield()
 
     def gather(self) -> Batch:
-        """Every message of the tick, sorted. A tick that nobody answers is sent again and then given up."""
+        """Every message of the tick. A tick that nobody answers is sent again and then given up."""
         waiting = set(self._senders)
-        items: list[pb.Item] = []
+        items, self._own = self._own, []
         began_s = named_s = self._monotonic_s()
         while waiting:
             payload = self._inbox.wait()
@@ -120,9 +112,25 @@ class LockstepHub:
                 continue
             done = parse_done(payload)
             if done and done.number == self.number and done.process in waiting:
-                items.extend(done.items)
+                items += self._taken_in(done)
                 waiting.discard(done.process)
-        return self._batch(items)
+        return Batch(self.t_ns, items)
+
+    def _taken_in(self, done: pb.Done) -> list[Item]:
+        """A process's messages, which are ready for their readers while other processes still work."""
+        items = [
+            Item(item.key, Header(item.epoch, item.sequence, item.t_ns), item.payload) for item in done.items
+        ]
+        for item in items:
+            self._deliver(item)
+        return items
+
+    def _deliver(self, item: Item) -> None:
+        for name in self._readers_of(item.key):
+            key, header, payload = item
+            self._next_ticks[name].items.add(
+                key=key, epoch=header.epoch, sequence=header.sequence, t_ns=header.t_ns, payload=payload
+            )
 
     def unsent(self) -> Batch:
         own, self._own = self._own, []
@@ -133,13 +141,6 @@ class LockstepHub:
         end = pb.Tick(number=self.number + 1, end=True).SerializeToString()
         for sender in self._senders.values():
             sender.put(end)
-
-    def _batch(self, items: list[pb.Item]) -> Batch:
-        found = [LogItem(item.key, item.epoch, item.sequence, item.t_ns, item.payload) for item in items]
-        found.sort()
-        self._to_deliver = list(found)
-        own, self._own = self._own, []
-        return Batch(self.t_ns, sorted(found + own) if own else found)
 
     def _readers_of(self, key: str) -> tuple[str, ...]:
         if key not in self._readers:

@@ -9,9 +9,9 @@ from typing import Any
 
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from google.protobuf.message import Message
-from mcap.writer import CompressionType, Writer
+from small_mcap import CompressionType, McapWriter
 
-from server.batch import Batch, LogItem
+from server.batch import Batch
 from swarm.errors import UserError
 from swarm.keys import topic_of
 
@@ -36,9 +36,7 @@ class Recorder:
         self.messages = 0
         self.unknown_keys: dict[str, int] = {}
         """Keys that the key table does not know, with the number of messages that were left out."""
-        self._writer = Writer(
-            self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=False
-        )
+        self._writer = McapWriter(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._writer.start(profile="", library="swarm-runtime")
         self._schemas: dict[str, int] = {}
         self._channels: dict[tuple[str, int], int | None] = {}
@@ -48,58 +46,68 @@ class Recorder:
 
     def write(self, batch: Batch) -> None:
         """Append a batch; its order is the file's order."""
-        for item in batch.items:
-            channel = self._channel(item)
-            if channel is not None:
-                self._writer.add_message(
-                    channel, batch.t_ns, item.payload, item.publish_t_ns, item.sequence & 0xFFFFFFFF
-                )
+        for key, header, payload in batch.items:
+            name = (key, header.epoch)
+            if name not in self._channels:
+                self._channels[name] = self._registered(key, header.epoch)
+            channel = self._channels[name]
+            if channel is None:
+                self._leave_out(key)
+            else:
+                sequence = header.sequence & 0xFFFFFFFF
+                self._writer.add_message(channel, batch.t_ns, payload, header.t_ns, sequence)
                 self.messages += 1
 
     def write_view(self, topic: str, message: Message, t_ns: int) -> None:
         """Append a message that the server made for viewers."""
         number = self._views.get(topic, 0) + 1
         self._views[topic] = number
-        if (topic, 0) not in self._channels:
-            schema = self._schema(type(message))
-            made = {"made_by": "server"}
-            self._channels[topic, 0] = self._writer.register_channel(topic, "protobuf", schema, made)
+        if number == 1:
+            self._channels[topic, 0] = self._channel(topic, type(message), {"made_by": "server"})
         channel = self._channels[topic, 0]
         assert channel is not None
         self._writer.add_message(channel, t_ns, message.SerializeToString(deterministic=True), t_ns, number)
 
     def flush(self) -> None:
         """End the chunk and hand everything to the operating system: a killed server loses none of it."""
-        self._writer.flush()  # type: ignore[no-untyped-call]
+        builder = self._writer.chunk_builder
+        assert builder is not None
+        chunk = builder.finalize()
+        if chunk is not None:
+            builder.reset()
+            self._writer.add_chunk(*chunk)
+        self._file.flush()
 
     def close(self) -> None:
         """Write the index and close the file; a second call does nothing."""
         if not self._file.closed:
-            self._writer.finish()  # type: ignore[no-untyped-call]
+            self._writer.finish()
             self._file.close()
 
-    def _channel(self, item: LogItem) -> int | None:
+    def _registered(self, key: str, epoch: int) -> int | None:
         """The channel of a key and epoch; None for a key that is not to be logged."""
-        name = (item.key, item.epoch)
-        if name not in self._channels:
-            self._channels[name] = self._registered(item)
-        if self._channels[name] is None and topic_of(item.key) is None:
-            self.unknown_keys[item.key] = self.unknown_keys.get(item.key, 0) + 1
-        return self._channels[name]
-
-    def _registered(self, item: LogItem) -> int | None:
-        found = topic_of(item.key)
+        found = topic_of(key)
         if found is None or not found[0].logged:
             return None
         topic, robot = found
-        metadata = {"epoch": str(item.epoch), "robot": robot, "delivery": topic.delivery.value}
-        return int(self._writer.register_channel(item.key, "protobuf", self._schema(topic.message), metadata))
+        about = {"epoch": str(epoch), "robot": robot, "delivery": topic.delivery.value}
+        return self._channel(key, topic.message, about)
+
+    def _leave_out(self, key: str) -> None:
+        if topic_of(key) is None:
+            self.unknown_keys[key] = self.unknown_keys.get(key, 0) + 1
+
+    def _channel(self, key: str, message: type[Message], about: dict[str, str]) -> int:
+        number = len(self._writer.channels) + 1
+        self._writer.add_channel(number, key, "protobuf", self._schema(message), about)
+        return number
 
     def _schema(self, message: type[Message]) -> int:
         name = message.DESCRIPTOR.full_name
         if name not in self._schemas:
             data = _descriptor_set(message.DESCRIPTOR.file).SerializeToString(deterministic=True)
-            self._schemas[name] = self._writer.register_schema(name, "protobuf", data)
+            self._schemas[name] = len(self._schemas) + 1
+            self._writer.add_schema(self._schemas[name], name, "protobuf", data)
         return self._schemas[name]
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from server.cores import available_cores, keeping_to, spread
 from server.hand import Hand, Operator, SimulatedHand
@@ -15,7 +16,7 @@ from server.hub import Hub
 from server.live_hub import LiveHub
 from server.lockstep_hub import LockstepHub
 from server.run_table import Pace, run_table
-from server.supervisor import Supervisor
+from server.supervisor import ProcessSpec, Supervisor
 from swarm.bus import Bus, BusSettings
 from swarm.clock import scaled_clock, unix_clock
 from swarm.experiment import Experiment
@@ -47,35 +48,44 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
 
     @contextmanager
     def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:
-        endpoint = f"tcp/127.0.0.1:{_free_port()}"
         pace = Pace(speed is None, speed or 1.0, time.monotonic_ns())
-        specs = run_table(experiment, file, endpoint, trial, pace, output)
         cores = available_cores()
         with (
+            socket_endpoint() as endpoint,
             keeping_to(cores[0]) if pace.lockstep else nullcontext(),
             Bus(BusSettings(endpoint, hub=True)) as bus,
-            Supervisor(specs, output, spread(len(specs), cores)) as supervisor,
         ):
+            specs = run_table(experiment, file, endpoint, trial, pace, output)
             claim(bus, _presence())
-            if pace.lockstep:
-                processes = [spec.name for spec in specs]
-                tempo = experiment.simulation
-                hub: Hub = LockstepHub(
-                    bus,
-                    processes,
-                    tempo.tick_s,
-                    supervisor.check,
-                    warn,
-                    ticks_per_exchange=tempo.ticks_per_exchange,
-                )
-                flush_every = LOCKSTEP_BATCHES_BETWEEN_FLUSHES
-            else:
-                clock = scaled_clock(pace.started_ns, pace.speed)
-                hub = LiveHub(bus, clock, experiment, supervisor.check, warn)
-                flush_every = _live_flush(experiment, pace.speed)
-            yield Stage(hub, SimulatedHand(hub.publish), flush_every)
+            with Supervisor(specs, output, spread(len(specs), cores)) as supervisor:
+                hub, flush_every = _hub(experiment, bus, pace, specs, supervisor.check, warn)
+                yield Stage(hub, SimulatedHand(hub.publish), flush_every)
 
     return stage
+
+
+def _hub(
+    experiment: Experiment,
+    bus: Bus,
+    pace: Pace,
+    specs: list[ProcessSpec],
+    check: Callable[[], None],
+    warn: Warn,
+) -> tuple[Hub, int]:
+    """The hub of a pace, and how many of its batches come between two flushes."""
+    if not pace.lockstep:
+        clock = scaled_clock(pace.started_ns, pace.speed)
+        return LiveHub(bus, clock, experiment, check, warn), _live_flush(experiment, pace.speed)
+    names, tempo = [spec.name for spec in specs], experiment.simulation
+    hub = LockstepHub(bus, names, tempo.tick_s, check, warn, ticks_per_exchange=tempo.ticks_per_exchange)
+    return hub, LOCKSTEP_BATCHES_BETWEEN_FLUSHES
+
+
+@contextmanager
+def socket_endpoint() -> Iterator[str]:
+    """A socket file that only this user can open: no port is taken, and a message takes less time."""
+    with TemporaryDirectory(prefix="swarm-") as place:
+        yield f"unixsock-stream/{place}/hub"
 
 
 def laboratory(experiment: Experiment, bus: Bus, warn: Warn) -> SetStage:
@@ -100,10 +110,3 @@ def _live_flush(experiment: Experiment, speed: float) -> int:
 
 def _nothing_to_check() -> None:
     """The laboratory's processes are not ours: who is missing shows by presence and health."""
-
-
-def _free_port() -> int:
-    """A port that nobody listens on now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])

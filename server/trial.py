@@ -80,10 +80,10 @@ class Trial:
         )
 
     def _step(self) -> None:
-        """The processes already work on the next tick while this one's messages are recorded."""
+        """The processes already work on the next tick while this one is looked at and recorded."""
         batch = self._hub.gather()
-        self._conductor.step(batch)
         self._hub.advance()
+        self._conductor.step(batch)
         self._recorder.write(batch)
         for topic, view in self._views.of(batch):
             self._recorder.write_view(topic, view, batch.t_ns)

@@ -19,11 +19,10 @@ from server.batch import Batch
 from swarm import keys
 from swarm.clock import NS_PER_S
 from swarm.experiment import Experiment
-from swarm.feed import Feed
+from swarm.feed import Feed, Feeds
 from swarm.geometry import Compartment
-from swarm.keys import Topic, topic_of
+from swarm.keys import Topic
 from swarm.messages import swarm_pb2 as pb
-from swarm.messages.header import Header
 
 ARENA, ROBOTS, LOG = "view/arena", "view/robots", "view/log"
 FRAME = "arena"
@@ -41,16 +40,13 @@ class Views:
         self._poses = Feed(keys.POSE)
         topics = (keys.EVENT, keys.TRACKER_EVENT, keys.SERVER_EVENT)
         self._events: dict[Topic[Any], Feed[pb.Event]] = {topic: Feed(topic) for topic in topics}
-        self._feeds: dict[Topic[Any], Feed[Any]] = {keys.POSE: self._poses, **self._events}
+        self._feeds = Feeds((self._poses, *self._events.values()))
         self._latest: dict[str, pb.Pose] = {}
         self._due_ns: int | None = None
 
     def of(self, batch: Batch) -> Iterator[View]:
         """Topic and message of every view that the batch calls for."""
-        for item in batch.items:
-            found = topic_of(item.key)
-            if found and (feed := self._feeds.get(found[0])):
-                feed.put(item.key, Header(item.epoch, item.sequence, item.publish_t_ns), item.payload)
+        self._feeds.put(batch.items)
         if self._due_ns is None:
             yield ARENA, self._arena(batch.t_ns)
         if self._due_ns is None or batch.t_ns >= self._due_ns:

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Generic, TypeVar
+from collections.abc import Iterable
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from google.protobuf.message import Message
 
 from swarm.keys import Delivery, Topic, topic_of
 from swarm.messages.checks import BadMessageError, decode
-from swarm.messages.header import Header
+from swarm.messages.header import Header, Item
 
 M = TypeVar("M", bound=Message)
 
 
-@dataclass(frozen=True, slots=True)
-class Received(Generic[M]):
+class Received(NamedTuple, Generic[M]):
     """A checked message, the robot that its key names, and its header."""
 
     robot: str
@@ -33,6 +32,7 @@ class Feed(Generic[M]):
 
     def __init__(self, topic: Topic[M]) -> None:
         self.topic = topic
+        self._newest_only = topic.delivery is Delivery.NEWEST
         self._waiting: dict[object, tuple[str, Header, bytes]] = {}
         self._seen: dict[str, tuple[int, int]] = {}
         self._believed: dict[str, tuple[int, int]] = {}
@@ -51,7 +51,7 @@ class Feed(Generic[M]):
             self.duplicates += 1
             return
         self._seen[key] = number
-        slot = key if self.topic.delivery is Delivery.NEWEST else (key, number)
+        slot = key if self._newest_only else (key, number)
         self._waiting.pop(slot, None)
         self._waiting[slot] = (key, header, payload)
 
@@ -81,3 +81,26 @@ class Feed(Generic[M]):
     def _refuse(self, key: str, reason: str) -> None:
         self.bad += 1
         self.last_bad = f"{key[:80]!r}: {reason}"
+
+
+class Feeds:
+    """Feeds of several topics, each of which takes in what is its own."""
+
+    def __init__(self, feeds: Iterable[Feed[Any]]) -> None:
+        self._feeds = {feed.topic: feed for feed in feeds}
+        self._by_key: dict[str, Feed[Any] | None] = {}
+
+    def put(self, items: Iterable[Item]) -> None:
+        """Keys that belong to no feed are passed over."""
+        for item in items:
+            if item.key not in self._by_key:
+                found = topic_of(item.key)
+                self._by_key[item.key] = self._feeds.get(found[0]) if found else None
+            feed = self._by_key[item.key]
+            if feed is not None:
+                feed.put(*item)
+
+    @property
+    def bad(self) -> int:
+        """Messages refused so far."""
+        return sum(feed.bad for feed in self._feeds.values())

@@ -33,9 +33,9 @@ class Delivery(Enum):
     """Dropped first: images."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Topic(Generic[M]):
-    """One line of the key table. `{robot}` in the pattern stands for a robot's id."""
+    """One line of the key table: itself and no other. `{robot}` in the pattern stands for a robot's id."""
 
     pattern: str
     message: type[M]

@@ -15,7 +15,7 @@ from swarm.feed import Feed
 from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
 from swarm.link import Sequencer
 from swarm.messages import swarm_pb2 as pb
-from swarm.messages.header import Header
+from swarm.messages.header import Header, Item
 
 M = TypeVar("M", bound=Message)
 
@@ -62,7 +62,7 @@ class LockstepLink:
             for t_ns, items in _steps(tick):
                 self._t_ns = t_ns
                 for item in items:
-                    self._deliver(item)
+                    self._deliver(*item)
                 yield t_ns
             self._number = tick.number
             self._answer = self._answer_to(tick.number)
@@ -97,14 +97,14 @@ class LockstepLink:
         )
         self._done.put(pb.Done(process=self._process, hello=hello).SerializeToString())
 
-    def _deliver(self, item: pb.Item) -> None:
-        self.keys_received.add(item.key)
-        feeds = self._routes.get(item.key)
+    def _deliver(self, key: str, header: Header, payload: bytes) -> None:
+        feeds = self._routes.get(key)
         if feeds is None:
-            feeds = tuple(feed for key, feed in self._feeds if key_matches(key, item.key))
-            self._routes[item.key] = feeds
+            feeds = tuple(feed for expression, feed in self._feeds if key_matches(expression, key))
+            self._routes[key] = feeds
+            self.keys_received.add(key)
         for feed in feeds:
-            feed.put(item.key, Header(item.epoch, item.sequence, item.t_ns), item.payload)
+            feed.put(key, header, payload)
 
     def _answer_to(self, number: int) -> bytes:
         self._message.number = number
@@ -117,14 +117,16 @@ class LockstepLink:
             self._done.put(self._answer)
 
 
-def _steps(tick: pb.Tick) -> Iterator[tuple[int, list[pb.Item]]]:
+def _steps(tick: pb.Tick) -> Iterator[tuple[int, list[Item]]]:
     """The times of an exchange, each with what arrives then: one exchange after it was published."""
+    waiting = sorted(
+        Item(item.key, Header(item.epoch, item.sequence, item.t_ns), item.payload) for item in tick.items
+    )
     times_ns = [tick.t_ns, *tick.more_t_ns]
     exchange_ns = (times_ns[-1] - times_ns[0]) // max(1, len(times_ns) - 1) * len(times_ns)
-    waiting = list(tick.items)
     for t_ns in times_ns[:-1]:
-        yield t_ns, [item for item in waiting if item.t_ns + exchange_ns <= t_ns]
-        waiting = [item for item in waiting if item.t_ns + exchange_ns > t_ns]
+        yield t_ns, [item for item in waiting if item.header.t_ns + exchange_ns <= t_ns]
+        waiting = [item for item in waiting if item.header.t_ns + exchange_ns > t_ns]
     yield times_ns[-1], waiting
 
 

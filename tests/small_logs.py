@@ -8,9 +8,10 @@ from pathlib import Path
 
 from google.protobuf.message import Message
 
-from server.batch import Batch, LogItem
+from server.batch import Batch
 from server.recorder import Recorder
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages.header import Header, Item
 
 TICK_NS = 100_000_000
 ROBOTS = {"expert": "expert expert", "imitator": "learner imitation", "loner": "learner no-imitation"}
@@ -47,7 +48,7 @@ class SmallLog:
         self._numbers[key, epoch] = number
         payload = message if isinstance(message, bytes) else message.SerializeToString()
         self.t_ns += TICK_NS
-        self.recorder.write(Batch(self.t_ns, [LogItem(key, epoch, number, self.t_ns, payload)]))
+        self.recorder.write(Batch(self.t_ns, [Item(key, Header(epoch, number, self.t_ns), payload)]))
         if self.recorder.messages % self.flush_every == 0:
             self.recorder.flush()
 

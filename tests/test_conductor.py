@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from google.protobuf.message import Message
 
-from server.batch import Batch, LogItem
+from server.batch import Batch
 from server.conductor import Conductor
 from server.hand import SimulatedHand
 from swarm import keys
@@ -17,6 +17,7 @@ from swarm.errors import RunFailedError
 from swarm.experiment import Experiment
 from swarm.keys import Topic
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages.header import Header, Item
 from tests.swarm_runs import experiment_text, write_experiment
 
 TICK_NS = NS_PER_S // 10
@@ -42,7 +43,7 @@ class Rig:
         items = []
         for key, payload in heard:
             self._sequence += 1
-            items.append(LogItem(key, 1, self._sequence, self.t_ns, payload))
+            items.append(Item(key, Header(1, self._sequence, self.t_ns), payload))
         self.conductor.step(Batch(self.t_ns, items))
         return [message for key, message in self.said[before:] if key == keys.RUN_STATE.key("")]
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from server.batch import Batch, LogItem
+from server.batch import Batch
 from server.health import Health
 from swarm.clock import NS_PER_S
+from swarm.messages.header import Header, Item
 
 TICK_NS = NS_PER_S // 10
 
@@ -20,7 +21,7 @@ class Rig:
         for _ in range(10 * seconds):
             self._tick += 1
             names = ["robot/a/pose"] if self._tick % poses_every == 0 else []
-            items = [LogItem(name, 1, 1, 0, b"") for name in (*names, "robot/a/move")]
+            items = [Item(name, Header(1, 1, 0), b"") for name in (*names, "robot/a/move")]
             self.health.step(Batch(self._tick * TICK_NS, items))
 
 

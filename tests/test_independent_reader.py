@@ -10,8 +10,8 @@ from typing import Any
 
 import polars as pl
 import pytest
-import small_mcap
-from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
 
 from swarm.analysis.log_reader import LogReader
 from swarm.analysis.run_analysis import Request, analyze
@@ -29,30 +29,13 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-class SchemaDecoder:
-    """Decodes with the descriptors that the file carries, and with nothing of this project's."""
-
-    def __init__(self) -> None:
-        self._types: dict[int, Any] = {}
-
-    def decode(self, schema: small_mcap.Schema, payload: bytes) -> Any:
-        if schema.id not in self._types:
-            pool = descriptor_pool.DescriptorPool()
-            for file in descriptor_pb2.FileDescriptorSet.FromString(bytes(schema.data)).file:
-                pool.Add(file)
-            found = pool.FindMessageTypeByName(schema.name)
-            self._types[schema.id] = message_factory.GetMessageClass(found)
-        return self._types[schema.id].FromString(payload)
-
-
 def read_independently(log: Path) -> list[tuple[str, int, Any]]:
-    """(topic, sequence, decoded message) in the file's order."""
-    decoder = SchemaDecoder()
+    """(topic, sequence, message decoded with the schemas that the file carries) in the file's order."""
     with log.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
         return [
-            (channel.topic, message.sequence, decoder.decode(schema, bytes(message.data)))
-            for schema, channel, message in small_mcap.read_message(file, validate_crc=True)
-            if schema is not None
+            (channel.topic, message.sequence, decoded)
+            for _, channel, message, decoded in reader.iter_decoded_messages(log_time_order=False)
         ]
 
 

@@ -17,7 +17,7 @@ from tests.swarm_runs import ROOT, experiment_text, learners, write_experiment
 
 LAB = (
     "mcap",
-    "mcap_protobuf",
+    "small_mcap",
     "foxglove_schemas_protobuf",
     "numba",
     "scipy",

@@ -15,7 +15,6 @@ from typing import Any
 import pytest
 
 from robot_agent.checkpoint import Checkpoint
-from server.batch import LogItem
 from server.live_hub import LiveHub
 from swarm import keys
 from swarm.bus import Bus, BusSettings
@@ -23,7 +22,7 @@ from swarm.clock import scaled_clock
 from swarm.experiment import Experiment
 from swarm.keys import Delivery, Topic, topic_of
 from swarm.messages import swarm_pb2 as pb
-from swarm.messages.header import Header
+from swarm.messages.header import Header, Item
 from swarm.presence import Presence, claim
 from tests.benchmarks.lockstep import free_endpoint
 from tests.swarm_runs import ROOT, experiment_text, learners, messages, run_server, write_experiment
@@ -86,7 +85,7 @@ class LiveSwarm:
         for process in self.processes:
             assert process.poll() in (None, -signal.SIGKILL), process.args
 
-    def items(self) -> Iterator[LogItem]:
+    def items(self) -> Iterator[Item]:
         """What comes, for ever, while the run's state is announced."""
         while True:
             if self._batches % STATE_EVERY_BATCHES == 0:
@@ -94,7 +93,7 @@ class LiveSwarm:
             self._batches += 1
             yield from self.hub.gather().items
 
-    def received(self, topic: Topic[Any]) -> Iterator[tuple[LogItem, Any]]:
+    def received(self, topic: Topic[Any]) -> Iterator[tuple[Item, Any]]:
         """Decoded messages of one topic as they come."""
         for item in self.items():
             found = topic_of(item.key)
@@ -113,7 +112,7 @@ def test_a_killed_agent_goes_on_from_its_checkpoint(swarm: LiveSwarm) -> None:
     agent = swarm.start_agent()
     first_epochs = set()
     for item, move in swarm.received(keys.MOVE):
-        first_epochs.add(item.epoch)
+        first_epochs.add(item.header.epoch)
         if move.number == 4:
             break
     agent.kill()
@@ -124,11 +123,13 @@ def test_a_killed_agent_goes_on_from_its_checkpoint(swarm: LiveSwarm) -> None:
     moves_saved = saved["brain"]["moves"]
     assert moves_saved >= 4
     swarm.start_agent()
-    item, move = next(found for found in swarm.received(keys.MOVE) if found[0].epoch not in first_epochs)
+    item, move = next(
+        found for found in swarm.received(keys.MOVE) if found[0].header.epoch not in first_epochs
+    )
     assert move.number == moves_saved + 1, "it counts on"
     before = saved["brain"]["q"][move.state][move.action]
     assert move.q_value - move.q_change == pytest.approx(before, abs=1e-12), "it learns on"
-    assert item.sequence == 1, "a restart shows in the log as a new epoch that counts from 1"
+    assert item.header.sequence == 1, "a restart shows in the log as a new epoch that counts from 1"
 
 
 def _run_in(path: Path) -> str:

@@ -84,10 +84,10 @@ def test_a_tick_s_messages_are_sorted_and_reach_their_readers_with_the_next(swar
     swarm.stack.close()
     assert [batch.t_ns for batch in batches] == [100_000_000, 200_000_000, 300_000_000]
     for number, batch in enumerate(batches, 1):
-        found = [(item.key, item.sequence) for item in batch.items if item.key.startswith("robot/")]
+        found = [(item.key, item.header.sequence) for item in batch.items if item.key.startswith("robot/")]
         moves = [("robot/a/move", number), ("robot/b/move", number)]
         assert found == (moves if number > 1 else [*moves, ("robot/b/order", 1)])
-        assert all(item.publish_t_ns == batch.t_ns for item in batch.items if item.key.endswith("move"))
+        assert all(item.header.t_ns == batch.t_ns for item in batch.items if item.key.endswith("move"))
     assert swarm.heard["a"] == [
         (tick * 100_000_000, f"move of {robot}", tick - 1) for tick in (2, 3) for robot in ("a", "b")
     ]
@@ -112,7 +112,7 @@ def test_a_repeated_tick_gets_the_same_answer_and_is_not_stepped_again(swarm: Sw
     assert answer.number == 1
     assert [(item.key, item.sequence) for item in answer.items] == [("robot/a/move", 1)]
     hub.advance()
-    assert [item.sequence for item in hub.gather().items] == [2]
+    assert [item.header.sequence for item in hub.gather().items] == [2]
     hub.finish()
 
 

@@ -8,18 +8,19 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from server.batch import Batch, LogItem
+from server.batch import Batch
 from server.recorder import Recorder, digest
 from swarm.analysis.log_reader import LogReader
 from swarm.errors import UserError
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages.header import Header, Item
 
 ABOUT = {"run": {"seed": "1"}, "robots": {"a": "learner learner"}}
 
 
-def pose_item(sequence: int, epoch: int = 1, x_m: float = 0.5) -> LogItem:
+def pose_item(sequence: int, epoch: int = 1, x_m: float = 0.5) -> Item:
     payload = pb.Pose(x_m=x_m).SerializeToString()
-    return LogItem("robot/a/pose", epoch, sequence, sequence * 100, payload)
+    return Item("robot/a/pose", Header(epoch, sequence, sequence * 100), payload)
 
 
 def read(path: Path) -> LogReader:
@@ -31,7 +32,8 @@ def read(path: Path) -> LogReader:
 
 def test_payload_numbers_and_times_are_those_of_the_wire(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path / "log.mcap", ABOUT)
-    recorder.write(Batch(1000, [pose_item(7), LogItem("robot/a/move", 1, 1, 800, b"no protobuf at all")]))
+    move_item = Item("robot/a/move", Header(1, 1, 800), b"no protobuf at all")
+    recorder.write(Batch(1000, [pose_item(7), move_item]))
     recorder.close()
     with (tmp_path / "log.mcap").open("rb") as file:
         reader = make_reader(file)
@@ -74,7 +76,8 @@ def test_a_restart_of_the_sender_is_a_channel_of_its_own(tmp_path: Path) -> None
 
 def test_what_the_key_table_does_not_know_is_counted(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path / "log.mcap", ABOUT)
-    recorder.write(Batch(1000, [LogItem("robot/a/secret", 1, n, 0, b"") for n in (1, 2)] + [pose_item(1)]))
+    secrets = [Item("robot/a/secret", Header(1, n, 0), b"") for n in (1, 2)]
+    recorder.write(Batch(1000, [*secrets, pose_item(1)]))
     recorder.close()
     assert recorder.unknown_keys == {"robot/a/secret": 2}
     assert read(recorder.path).messages == recorder.messages == 1

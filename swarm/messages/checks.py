@@ -40,52 +40,51 @@ def decode(message_type: type[M], payload: bytes) -> M:
 
 def check(message: Message) -> None:
     """BadMessageError unless every float is finite and plausible and every time is positive."""
-    for name, limit, hint in _numbers(message.DESCRIPTOR):
-        _check_number(message, name, getattr(message, name), limit, hint)
-    for name, limit, hint in _lists(message.DESCRIPTOR):
+    singles, lists, parts = _fields(message.DESCRIPTOR)
+    for name, low, high, hint in singles:
+        value = getattr(message, name)
+        if not low <= value <= high:
+            raise _not_plausible(message, name, value, hint)
+    for name, low, high, hint in lists:
         for value in getattr(message, name):
-            _check_number(message, name, value, limit, hint)
-    for name in _message_lists(message.DESCRIPTOR):
+            if not low <= value <= high:
+                raise _not_plausible(message, name, value, hint)
+    for name in parts:
         for part in getattr(message, name):
             check(part)
 
 
-def _check_number(message: Message, name: str, value: float, limit: float, hint: str) -> None:
-    if not -limit <= value <= limit:
-        raise BadMessageError(f"{message.DESCRIPTOR.name}.{name} is {value!r}: not plausible ({hint})")
-    if value < 0 and name.endswith("t_ns"):
-        raise BadMessageError(f"{message.DESCRIPTOR.name}.{name} is {value}: a time before the run")
+def _not_plausible(message: Message, name: str, value: float, hint: str) -> BadMessageError:
+    return BadMessageError(f"{message.DESCRIPTOR.name}.{name} is {value!r}: not plausible ({hint})")
 
 
-Numbers = tuple[tuple[str, float, str], ...]
+Limits = tuple[tuple[str, float, float, str], ...]
 
 
 @cache
-def _numbers(descriptor: Descriptor) -> Numbers:
-    """(field, largest magnitude, hint) of each single number of a message type."""
-    return _limits(descriptor, repeated=False)
+def _fields(descriptor: Descriptor) -> tuple[Limits, Limits, tuple[str, ...]]:
+    """A message type's single numbers, lists of numbers, and lists of messages.
+
+    A number's limits are its name, the lowest and highest that it may be, and a hint.
+    """
+    parts = tuple(
+        field.name
+        for field in descriptor.fields
+        if field.is_repeated and field.cpp_type == FieldDescriptor.CPPTYPE_MESSAGE
+    )
+    return _limits(descriptor, repeated=False), _limits(descriptor, repeated=True), parts
 
 
-@cache
-def _lists(descriptor: Descriptor) -> Numbers:
-    return _limits(descriptor, repeated=True)
-
-
-@cache
-def _message_lists(descriptor: Descriptor) -> tuple[str, ...]:
-    kind = FieldDescriptor.CPPTYPE_MESSAGE
-    return tuple(field.name for field in descriptor.fields if field.is_repeated and field.cpp_type == kind)
-
-
-def _limits(descriptor: Descriptor, *, repeated: bool) -> Numbers:
-    limits = []
+def _limits(descriptor: Descriptor, *, repeated: bool) -> Limits:
+    limits: list[tuple[str, float, float, str]] = []
     for field in descriptor.fields:
         if field.is_repeated != repeated:
             continue
         if field.cpp_type == FieldDescriptor.CPPTYPE_DOUBLE:
-            limits.append((field.name, *_range_of(field.name)))
+            largest, hint = _range_of(field.name)
+            limits.append((field.name, -largest, largest, hint))
         elif field.name.endswith("t_ns"):
-            limits.append((field.name, MAX_T_NS, "nanoseconds"))
+            limits.append((field.name, 0, MAX_T_NS, "a time before the run, or not in nanoseconds"))
     return tuple(limits)
 
 

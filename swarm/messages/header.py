@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
+from typing import NamedTuple
 
 _LAYOUT = struct.Struct("<QQq")
 
 
-@dataclass(frozen=True, slots=True)
-class Header:
+class Header(NamedTuple):
     """A sender's epoch (new at each start of its process), a number that counts the messages of one
     key from 1 within an epoch, and the run's time of publishing. Gaps, duplicates and restarts show.
     """
@@ -20,9 +19,17 @@ class Header:
 
     def pack(self) -> bytes:
         """24 bytes, little-endian: u64 epoch, u64 sequence, i64 t_ns."""
-        return _LAYOUT.pack(self.epoch, self.sequence, self.t_ns)
+        return _LAYOUT.pack(*self)
 
     @classmethod
     def unpack(cls, data: bytes) -> Header | None:
         """The header, or None if the bytes are no header."""
         return cls(*_LAYOUT.unpack(data)) if len(data) == _LAYOUT.size else None
+
+
+class Item(NamedTuple):
+    """One message as it travels, undecoded. Items sort by key, epoch and sequence."""
+
+    key: str
+    header: Header
+    payload: bytes

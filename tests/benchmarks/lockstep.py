@@ -21,6 +21,7 @@ from statistics import median
 
 from server.cores import available_cores, keeping_to, spread
 from server.lockstep_hub import LockstepHub
+from server.stage import socket_endpoint
 from server.supervisor import ProcessSpec, Supervisor
 from swarm.bus import Bus, BusSettings
 from swarm.lockstep import LockstepLink
@@ -115,15 +116,15 @@ def free_endpoint() -> str:
 
 def measure(processes: int, rounds: int, ticks: int) -> dict[str, object]:
     """All three with their processes alive, a piece of each in turn."""
-    endpoint = free_endpoint()
-    specs = zenoh_specs(endpoint, processes)
     cores = available_cores()
     with (
         tempfile.TemporaryDirectory() as directory,
+        socket_endpoint() as endpoint,
         keeping_to(cores[0]),
         Bus(BusSettings(endpoint, hub=True)) as bus,
     ):
         claim(bus, Presence("server", "server", "here", 1))
+        specs = zenoh_specs(endpoint, processes)
         pinned_path, free_path = f"{directory}/pinned", f"{directory}/free"
         bare = {path: BareHub(path, processes) for path in (pinned_path, free_path)}
         with (
@@ -137,6 +138,7 @@ def measure(processes: int, rounds: int, ticks: int) -> dict[str, object]:
         ):
             for pid in unpinned.pids.values():
                 os.sched_setaffinity(pid, cores)
+                os.sched_setscheduler(pid, os.SCHED_OTHER, os.sched_param(0))
             hub = LockstepHub(bus, [spec.name for spec in specs], TICK_S, agents.check, print)
             hub.start()
             for each in bare.values():
