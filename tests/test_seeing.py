@@ -87,7 +87,7 @@ def test_posts_of_the_skirts_colour_are_seldom_taken_for_it() -> None:
     assert sum(isinstance(look.said, Sighting) for look in looks) >= 0.8 * len(looks)
 
 
-def test_the_papers_profile_sees_whole_pixels_and_says_how_unsure_it_is() -> None:
+def test_the_papers_profile_counts_pixels_and_says_how_unsure_it_is() -> None:
     looks = list(scattered("paper", "realistic", "red", 150, 3))
     figures = accuracy(looks, MODEL.scaled(160, 120))
     assert figures["answered"] >= 0.93

@@ -143,7 +143,7 @@ def test_rendered_demonstrations_are_copied(kind: str) -> None:
 
 
 def test_the_papers_way_copies_worse() -> None:
-    """Small frames, whole pixels and regression lines: many lists are wrong, and few are refused."""
+    """Small frames, counted pixels and regression lines: many lists are wrong, and few are refused."""
     experiment = rehearsal_experiment(Watching.PAPER)
     shown = list(rehearsals(experiment, "random", 20, seed=1))
     perfect = sum(each.copied_moves == tuple(map(int, each.demonstration.moves)) for each in shown)

@@ -27,7 +27,13 @@ from robot_agent.imitation.cylinder import (
 )
 from robot_agent.imitation.edges import EdgeFinder
 from robot_agent.imitation.gate import Gate, Place
-from robot_agent.imitation.shape import TILT_RAD, depth_from_height_m, fits_part_of_skirt, fits_skirt
+from robot_agent.imitation.shape import (
+    TILT_RAD,
+    depth_from_height_m,
+    fits_part_of_skirt,
+    fits_skirt,
+    sides_by_size,
+)
 from swarm.errors import UserError, nearest
 
 MOUNTING_SD_RAD = math.radians(0.05)
@@ -89,10 +95,9 @@ class NotSeen:
 
 @dataclass(frozen=True)
 class Profile:
-    """How edges are measured: to a fraction of a pixel, or as the border of the patch in whole pixels.
+    """How a patch's sides are measured: to a fraction of a pixel, or from its size, the number of its pixels.
 
     `tolerance_px` is how far a patch's upper and lower border may be from where a skirt's would be.
-    `shrunk_px` is how much narrower than the skirt its patch is, for the blur at its sides.
     `edge_sd_px` is the standard deviation of an edge's error, measured by tests/benchmarks/seeing.py.
     """
 
@@ -101,20 +106,19 @@ class Profile:
     sub_pixel: bool
     edge_sd_px: float
     tolerance_px: float
-    shrunk_px: float = 0.0
 
 
 PROFILES = {
     "best": Profile(320, 240, sub_pixel=True, edge_sd_px=0.08, tolerance_px=1.7),
-    "paper": Profile(160, 120, sub_pixel=False, edge_sd_px=0.5, tolerance_px=2.6, shrunk_px=1.45),
+    "paper": Profile(160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6),
 }
 
 
 class Seer:
     """Looks for one skirt in the frames of one camera, one frame after the other.
 
-    `profile` is "best" (320 x 240, edges to a fraction of a pixel) or "paper" (160 x 120, size of the patch
-    in whole pixels). The camera's model is taken at the profile's resolution.
+    `profile` is "best" (320 x 240, edges to a fraction of a pixel) or "paper" (160 x 120, sides from the
+    number of the patch's pixels). The camera's model is taken at the profile's resolution.
     """
 
     def __init__(self, profile: str, model: CameraModel, table: ColourTable) -> None:
@@ -188,8 +192,7 @@ class Seer:
 
     def _edges(self, words: Words, blob: Blob) -> tuple[float | None, float | None]:
         if not self.profile.sub_pixel:
-            aside = self.profile.shrunk_px / 2
-            return blob.left - 0.5 - aside, blob.right - 0.5 + aside
+            return sides_by_size(blob)
         edges = self._finder.find(words, blob)
         return edges.left, edges.right
 

@@ -17,6 +17,8 @@ GROWN_PX = 0.7
 """How much higher than the skirt its patch is: the body and the shadow do not bound it as white wall does."""
 TILT_RAD = 0.02
 """How far the robot may be tilted: it moves the whole image up or down."""
+SHRUNK_PX = 1.1
+"""How much narrower than the skirt its patch is: blur takes about half a pixel from each side."""
 SMALLEST_PART = 1 / 3
 """Of the skirt's width: less of it than this says too little."""
 
@@ -52,3 +54,11 @@ def _fits_above(blob: Blob, model: CameraModel, depth_m: float, tolerance_px: fl
 
 def _close(seen_px: float, expected_px: float, tolerance_px: float) -> bool:
     return abs(seen_px - expected_px) <= tolerance_px + TOLERANCE * expected_px
+
+
+def sides_by_size(blob: Blob) -> tuple[float, float]:
+    """Columns of a skirt's two sides, from its proportions and the number of the patch's pixels."""
+    middle_px = (blob.left + blob.right - 1) / 2
+    width_by_height = 2 * SKIRT_RADIUS_M / (SKIRT_TOP_M - SKIRT_BOTTOM_M)
+    half_px = (math.sqrt(width_by_height * blob.area) + SHRUNK_PX) / 2
+    return middle_px - half_px, middle_px + half_px
