@@ -76,9 +76,10 @@ def _hub(
     if not pace.lockstep:
         clock = scaled_clock(pace.started_ns, pace.speed)
         return LiveHub(bus, clock, experiment, check, warn), _live_flush(experiment, pace.speed)
-    names, tempo = [spec.name for spec in specs], experiment.simulation
-    hub = LockstepHub(bus, names, tempo.tick_s, check, warn, ticks_per_exchange=tempo.ticks_per_exchange)
-    return hub, LOCKSTEP_BATCHES_BETWEEN_FLUSHES
+    names, ticks = [spec.name for spec in specs], experiment.ticks_per_exchange
+    tick_s = experiment.simulation.tick_s
+    hub = LockstepHub(bus, names, tick_s, check, warn, ticks_per_exchange=ticks)
+    return hub, LOCKSTEP_BATCHES_BETWEEN_FLUSHES // ticks
 
 
 @contextmanager

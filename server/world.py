@@ -21,17 +21,19 @@ class World:
         self._experiment = experiment
         self._publish = publish
         self._truths: dict[str, pb.Truth] = {}
+        self._t_ns = 0
 
     def step(self, truths: Iterable[Received[pb.Truth]], watching: Mapping[str, str]) -> None:
         """Take in where the robots are, and show it to the observers."""
         for received in truths:
             self._truths[received.robot] = received.message
+            self._t_ns = received.header.t_ns
         for observer, demonstrator in watching.items():
             self._publish(keys.VIEW, self._view(observer, demonstrator), observer)
 
     def _view(self, observer: str, demonstrator: str) -> pb.View:
         room = self._experiment.compartment(self._experiment.robot_named(demonstrator))
-        view = pb.View()
+        view = pb.View(t_ns=self._t_ns)
         view.walls.add(west_m=room.west_m, south_m=room.south_m, east_m=room.east_m, north_m=room.north_m)
         for robot in self._experiment.robot:
             truth = self._truths.get(robot.id)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -55,6 +56,14 @@ def test_what_the_command_line_changes(tmp_path: Path) -> None:
     changed = experiment.changed(seed=7, moves=3, processes=2)
     assert (changed.run.seed, changed.run.moves, changed.simulation.processes) == (7, 3, 2)
     assert experiment.changed() == experiment
+
+
+def test_an_exchange_is_no_longer_than_a_camera_waits_between_frames(tmp_path: Path) -> None:
+    slow = "[simulation]\nticks_per_exchange = 4\n"
+    alone = load(tmp_path, GOOD + slow)
+    watching = replace(alone, robot=(alone.robot[0], replace(alone.robot[1], watches=alone.robot[0].id)))
+    quick = replace(watching, visits=replace(watching.visits, frames_per_s=20.0))
+    assert [one.ticks_per_exchange for one in (alone, watching, quick)] == [4, 2, 1]
 
 
 @pytest.mark.parametrize("file", sorted((ROOT / "deploy" / "sim").glob("*.toml")), ids=lambda file: file.name)

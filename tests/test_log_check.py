@@ -30,7 +30,7 @@ def test_a_sound_log_passes(log: SmallLog) -> None:
 def test_a_missing_index_is_a_fault(log: SmallLog, tmp_path: Path) -> None:
     torn = tmp_path / "torn.mcap"
     data = log.close().read_bytes()
-    torn.write_bytes(data[: len(data) // 3])
+    torn.write_bytes(data[: len(data) // 2])
     found = check_log(torn)
     assert not found.indexed
     assert "cut short" in found.faults[0]

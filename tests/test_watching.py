@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -58,6 +59,32 @@ def test_positions_lie_where_the_demonstrator_was(followed: Rehearsed) -> None:
     assert len(errors_m) > 50
     assert float(np.median(errors_m)) < 0.01
     assert max(errors_m) < 0.05
+
+
+class Late:
+    """A camera whose frames come two frames after their exposure."""
+
+    def __init__(self, stage: Stage) -> None:
+        self._stage = stage
+        self._under_way: deque[Frame | None] = deque((None, None))
+
+    def capture(self, t_ns: int) -> Frame | None:
+        self._under_way.append(self._stage.camera.capture(t_ns))
+        return self._under_way.popleft()
+
+
+def test_a_late_frame_is_put_where_the_turning_observer_looked_then() -> None:
+    stage, shown = Stage(EXPERIMENT, np.random.default_rng(2)), across()
+    stage.shown = stage.scenes(shown)
+    began_ns = stage.settle()
+    watch = Watch(Late(stage), stage.seer, began_ns, 0.1 * len(shown.track), 5.0)
+    stage.run(watch, began_ns, len(shown.track))
+    errors_m = []
+    for position in watch.positions:
+        true = shown.track[(position.t_ns - began_ns) // TICK_NS]
+        errors_m.append(math.dist((position.x_m, position.y_m), (true.x_m, true.y_m)))
+    assert len(errors_m) > 50
+    assert float(np.median(errors_m)) < 0.01
 
 
 @dataclass

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -11,7 +12,6 @@ from robot_agent.drivers.camera_conditions import conditions
 from robot_agent.drivers.camera_model import CameraModel
 from robot_agent.drivers.camera_scene import Body, Rectangle, Scene
 from robot_agent.drivers.camera_sim import SimulatedCamera, calibration_frames
-from robot_agent.drivers.sim import SimulatedBody
 from swarm import keys
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose, wrap_angle_rad
@@ -25,38 +25,45 @@ CALIBRATION_RANGES_M = (0.2, 0.25, 0.3, 0.4, 0.5)
 
 
 class SimulatedRobotCamera:
-    """A camera like any other: it renders from the simulated truth, which the agent never sees."""
+    """A camera like any other: it renders from the simulated truth, which the agent never sees.
+
+    A frame is of the time of the newest view, and comes a little later, as a real camera's does.
+    `truth_at` tells where the robot itself was then.
+    """
 
     def __init__(
         self,
         model: CameraModel,
         conditions_name: str,
-        body: SimulatedBody,
+        truth_at: Callable[[int], Pose],
         link: Link,
         robot: str,
         rng: np.random.Generator,
     ) -> None:
         self._camera = SimulatedCamera(model, conditions(conditions_name), rng)
-        self._body = body
+        self._truth_at = truth_at
         self._views = link.subscribe(keys.VIEW, robot)
         self._view: pb.View | None = None
-        self._view_t_ns = 0
+        self._shown_ns = -1
         self._velocities: list[tuple[float, float]] = []
         self._own: tuple[int, float] | None = None
 
-    def capture(self, t_ns: int) -> Frame | None:
-        """The frame at this time; None while the simulation shows nothing."""
+    def capture(self, t_ns: int) -> Frame | None:  # noqa: ARG002
+        """The newest frame; None while the simulation shows nothing new."""
         for received in self._views.take():
-            self._take_in(received.message, received.header.t_ns)
-        if self._view is None:
+            self._take_in(received.message)
+        view = self._view
+        if view is None or view.t_ns <= self._shown_ns:
             return None
-        own = self._body.truth(t_ns)
-        return self._camera.render(t_ns, own, self._scene(self._view), self._turn_rate_rad_s(own, t_ns))
+        self._shown_ns = view.t_ns
+        own = self._truth_at(view.t_ns)
+        turn_rate_rad_s = self._turn_rate_rad_s(own, view.t_ns)
+        return self._camera.render(view.t_ns, own, self._scene(view), turn_rate_rad_s)
 
-    def _take_in(self, view: pb.View, t_ns: int) -> None:
+    def _take_in(self, view: pb.View) -> None:
         """Two views give the velocities that blur the image."""
-        elapsed_s = (t_ns - self._view_t_ns) / NS_PER_S
-        before, self._view, self._view_t_ns = self._view, view, t_ns
+        before, self._view = self._view, view
+        elapsed_s = (view.t_ns - before.t_ns) / NS_PER_S if before else 0.0
         if before is None or len(before.bodies) != len(view.bodies) or not 0 < elapsed_s < 1:
             self._velocities = [(0.0, 0.0)] * len(view.bodies)
             return

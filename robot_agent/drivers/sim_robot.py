@@ -6,6 +6,8 @@ message here.
 
 from __future__ import annotations
 
+from collections import deque
+
 from robot_agent.drivers.body import WheelSpeeds, WheelSteps
 from robot_agent.drivers.camera import Camera
 from robot_agent.drivers.camera_model import CameraModel
@@ -16,6 +18,9 @@ from swarm.geometry import Pose
 from swarm.link import Link
 from swarm.messages import swarm_pb2 as pb
 
+TICKS_REMEMBERED = 20
+"""What a camera shows is that late at most."""
+
 
 class SimulatedRobot:
     """A simulated body that publishes its truth whenever its wheels are read: once a tick."""
@@ -25,6 +30,7 @@ class SimulatedRobot:
         self._link = link
         self._robot = robot
         self._carries = link.subscribe(keys.CARRY, robot)
+        self._truths: deque[tuple[int, Pose]] = deque(maxlen=TICKS_REMEMBERED)
 
     def drive(self, speeds: WheelSpeeds, t_ns: int) -> WheelSpeeds:
         return self.body.drive(speeds, t_ns)
@@ -35,6 +41,7 @@ class SimulatedRobot:
             to = carry.message
             self.body.place(Pose(to.x_m, to.y_m, to.theta_rad))
         truth = self.body.truth(t_ns)
+        self._truths.append((t_ns, truth))
         self._link.publish(
             keys.TRUTH,
             pb.Truth(
@@ -43,6 +50,10 @@ class SimulatedRobot:
             self._robot,
         )
         return steps
+
+    def truth_at(self, t_ns: int) -> Pose:
+        """Where the robot really was at one of the last ticks; IndexError before the first."""
+        return next((pose for tick_ns, pose in reversed(self._truths) if tick_ns <= t_ns), self._truths[0][1])
 
     def close(self) -> None:
         self.body.close()
@@ -55,14 +66,14 @@ class SimulatedDriver:
         faults = parts.experiment.body
         compartment = parts.experiment.compartment(parts.robot)
         self._parts = parts
-        self._body = SimulatedBody(
+        body = SimulatedBody(
             parts.geometry,
             BodyFaults(faults.slip_sd, faults.gain_error_sd, faults.latency_s),
             Pose(*compartment.centre(compartment.grid.start), 0.0),
             compartment,
             parts.generator("body"),
         )
-        self.body = SimulatedRobot(self._body, parts.link, parts.robot.id)
+        self.body = SimulatedRobot(body, parts.link, parts.robot.id)
 
     def camera(self, model: CameraModel) -> Camera:
         """A rendered camera; what it takes to render is loaded here and not before."""
@@ -71,4 +82,4 @@ class SimulatedDriver:
         parts = self._parts
         light = parts.experiment.camera.conditions
         generator = parts.generator("camera")
-        return SimulatedRobotCamera(model, light, self._body, parts.link, parts.robot.id, generator)
+        return SimulatedRobotCamera(model, light, self.body.truth_at, parts.link, parts.robot.id, generator)

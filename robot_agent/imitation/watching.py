@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from robot_agent.drivers.camera import Camera, Frame
 from robot_agent.imitation.observation import ObservedPosition, position_from_sighting
+from robot_agent.imitation.own_poses import OwnPoses
 from robot_agent.imitation.searching import Search
 from robot_agent.imitation.seeing import NotSeen, Seer, Sighting
 from swarm.clock import NS_PER_S
@@ -53,6 +54,7 @@ class Watch:
         self._period_ns = round(NS_PER_S / frames_per_s)
         self._due_ns = began_ns
         self._stood: Pose | None = None
+        self._own_poses = OwnPoses()
         self._search = Search(began_ns)
         self._towards_rad: float | None = None
         self._looked_from_rad: float | None = None
@@ -70,11 +72,12 @@ class Watch:
         if own_pose is None:
             return 0.0
         self._stood = self._stood or own_pose
+        self._own_poses.add(own_pose, t_ns)
         if self._stood.distance_m(own_pose) > PUSHED_M:
             self.failed = "the observer was pushed"
         elif self._due_ns <= t_ns < self._ends_ns:
             self._due_ns += self._period_ns
-            self._take(self._camera.capture(t_ns), own_pose, t_ns)
+            self._take(self._camera.capture(t_ns))
         return self._turn_rad_per_s(own_pose)
 
     @property
@@ -87,7 +90,7 @@ class Watch:
         counts = Counter(looked.answer.reason for looked in self.looks if isinstance(looked.answer, NotSeen))
         return counts.most_common(1)[0][0].value if counts else ""
 
-    def _take(self, frame: Frame | None, own_pose: Pose, t_ns: int) -> None:
+    def _take(self, frame: Frame | None) -> None:
         if frame is None:
             self._missing += 1
             if self._missing > MOST_MISSING_FRAMES:
@@ -99,9 +102,11 @@ class Watch:
         if self._repeated >= MOST_REPEATED_FRAMES:
             self.failed = f"the camera is frozen: {self._repeated + 1} equal frames"
             return
-        self._look(frame, frame_hash, own_pose, t_ns)
+        self._look(frame, frame_hash)
 
-    def _look(self, frame: Frame, frame_hash: int, own_pose: Pose, t_ns: int) -> None:
+    def _look(self, frame: Frame, frame_hash: int) -> None:
+        """A frame comes late: what it shows is put where the robot was when it was exposed."""
+        own_pose = self._own_poses.at(frame.t_ns)
         from_rad, self._looked_from_rad = self._looked_from_rad, own_pose.theta_rad
         turned_rad = None if from_rad is None else wrap_angle_rad(own_pose.theta_rad - from_rad)
         answer = self._seer.look(frame, turned_rad)
@@ -118,9 +123,9 @@ class Watch:
                 bearing_rad,
                 answer.range_sd_m,
                 answer.bearing_sd_rad,
-                t_ns,
+                frame.t_ns,
             )
-        self.looks.append(Looked(t_ns, frame_hash, answer, position))
+        self.looks.append(Looked(frame.t_ns, frame_hash, answer, position))
 
     def _turn_rad_per_s(self, own_pose: Pose) -> float:
         if self._towards_rad is None or self.failed:

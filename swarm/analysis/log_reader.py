@@ -24,7 +24,7 @@ from swarm.analysis.log_parts import LogChannel, Part, PendingPart, Wanted, ever
 from swarm.errors import UserError
 
 MAX_EPOCH = 2**63 - 1
-_BROKEN = (McapError, DamagedChunkError, ValueError, struct.error)
+_BROKEN = (McapError, DamagedChunkError, ValueError, OverflowError, struct.error)
 _READ: dict[int, Any] = {
     Opcode.SCHEMA: Schema.read,
     Opcode.CHANNEL: Channel.read,

@@ -746,7 +746,7 @@ Global___Carry: _TypeAlias = Carry  # noqa: Y015
 
 @_typing.final
 class View(_message.Message):
-    """Simulation: what stands before a robot's camera now; only the simulated camera reads it."""
+    """Simulation: what stood before a robot's camera at a time; only the simulated camera reads it."""
 
     DESCRIPTOR: _descriptor.Descriptor
 
@@ -804,6 +804,8 @@ class View(_message.Message):
 
     BODIES_FIELD_NUMBER: _builtins.int
     WALLS_FIELD_NUMBER: _builtins.int
+    T_NS_FIELD_NUMBER: _builtins.int
+    t_ns: _builtins.int
     @_builtins.property
     def bodies(self) -> _containers.RepeatedCompositeFieldContainer[Global___View.Body]: ...
     @_builtins.property
@@ -813,10 +815,11 @@ class View(_message.Message):
         *,
         bodies: _abc.Iterable[Global___View.Body] | None = ...,
         walls: _abc.Iterable[Global___View.Walls] | None = ...,
+        t_ns: _builtins.int = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["bodies", b"bodies", "walls", b"walls"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["bodies", b"bodies", "t_ns", b"t_ns", "walls", b"walls"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 

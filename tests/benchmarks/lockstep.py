@@ -1,8 +1,9 @@
 """The lockstep with empty agents, as a ratio to a bare Unix-socket lockstep of the same shape.
 
-Ten processes each answer every tick; the real hub, link, bus and supervisor against `socket` and `epoll`,
-pinned to cores as the supervisor does it and left to the scheduler. All stand ready at once and take turns,
-so that a busy machine is as bad for each. `python -m tests.benchmarks.lockstep` prints one JSON line.
+Ten processes each answer every tick; the real hub, link, bus and supervisor against `socket` and `epoll`:
+as anyone would write it, then kept to cores, and then also with processes that do not interrupt each other,
+as ours. All stand ready at once and take turns, so that a busy machine is as bad for each.
+`python -m tests.benchmarks.lockstep` prints one JSON line.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ import socket
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
@@ -33,6 +36,21 @@ FRAME_BYTES = 128
 TICK_S = 0.1
 
 Advance = Callable[[int], None]
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """Whether hub and processes keep to a core each, and how the kernel lets them take turns."""
+
+    kept: bool
+    policy: int
+
+
+SCHEDULES = {
+    "bare": Schedule(False, os.SCHED_OTHER),
+    "bare_kept_to_cores": Schedule(True, os.SCHED_OTHER),
+    "bare_scheduled_as_ours": Schedule(True, os.SCHED_BATCH),
+}
 
 
 def zenoh_worker(name: str, endpoint: str) -> None:
@@ -115,44 +133,51 @@ def free_endpoint() -> str:
 
 
 def measure(processes: int, rounds: int, ticks: int) -> dict[str, object]:
-    """All three with their processes alive, a piece of each in turn."""
+    """All with their processes alive, a piece of each in turn."""
     cores = available_cores()
-    with (
-        tempfile.TemporaryDirectory() as directory,
-        socket_endpoint() as endpoint,
-        keeping_to(cores[0]),
-        Bus(BusSettings(endpoint, hub=True)) as bus,
-    ):
+    with ExitStack() as stack:
+        directory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        endpoint = stack.enter_context(socket_endpoint())
+        stack.enter_context(keeping_to(cores[0]))
+        bus = stack.enter_context(Bus(BusSettings(endpoint, hub=True)))
         claim(bus, Presence("server", "server", "here", 1))
         specs = zenoh_specs(endpoint, processes)
-        pinned_path, free_path = f"{directory}/pinned", f"{directory}/free"
-        bare = {path: BareHub(path, processes) for path in (pinned_path, free_path)}
-        with (
-            Supervisor(specs, Path(directory) / "zenoh", spread(processes, cores)) as agents,
-            Supervisor(
-                bare_specs(pinned_path, processes, "pinned"), Path(directory) / "p", spread(processes, cores)
-            ),
-            Supervisor(
-                bare_specs(free_path, processes, "free"), Path(directory) / "f", spread(processes, cores)
-            ) as unpinned,
-        ):
-            for pid in unpinned.pids.values():
-                os.sched_setaffinity(pid, cores)
-                os.sched_setscheduler(pid, os.SCHED_OTHER, os.sched_param(0))
-            hub = LockstepHub(bus, [spec.name for spec in specs], TICK_S, agents.check, print)
-            hub.start()
-            for each in bare.values():
-                each.start()
-            advances = {
-                "zenoh": zenoh_advance(hub),
-                "bare": bare[pinned_path].advance,
-                "bare_unpinned": bare[free_path].advance,
-            }
-            result = _rounds(advances, agents.pids, rounds, ticks)
-            hub.finish()
-            for each in bare.values():
-                each.close()
-    return {"processes": processes, **result}
+        agents = stack.enter_context(Supervisor(specs, directory / "zenoh", spread(processes, cores)))
+        hub = LockstepHub(bus, [spec.name for spec in specs], TICK_S, agents.check, print)
+        hub.start()
+        stack.callback(hub.finish)
+        advances = {"zenoh": zenoh_advance(hub)}
+        for name, schedule in SCHEDULES.items():
+            advances[name] = stack.enter_context(_bare(name, schedule, processes, cores, directory))
+        return {"processes": processes, **_rounds(advances, agents.pids, rounds, ticks)}
+
+
+@contextmanager
+def _bare(
+    name: str, schedule: Schedule, processes: int, cores: list[int], directory: Path
+) -> Iterator[Advance]:
+    """A bare lockstep whose hub and processes are scheduled in one way."""
+    path = str(directory / f"{name}.socket")
+    hub = BareHub(path, processes)
+    places = spread(processes, cores)
+
+    def advance(ticks: int) -> None:
+        before = os.sched_getaffinity(0), os.sched_getscheduler(0)
+        _be_scheduled(0, [cores[0]] if schedule.kept else cores, schedule.policy)
+        hub.advance(ticks)
+        _be_scheduled(0, *before)
+
+    with Supervisor(bare_specs(path, processes, name), directory / name, places) as workers:
+        for pid, place in zip(workers.pids.values(), places, strict=True):
+            _be_scheduled(pid, [place] if schedule.kept else cores, schedule.policy)
+        hub.start()
+        yield advance
+        hub.close()
+
+
+def _be_scheduled(pid: int, cores: Collection[int], policy: int) -> None:
+    os.sched_setaffinity(pid, cores)
+    os.sched_setscheduler(pid, policy, os.sched_param(0))
 
 
 def _rounds(advances: dict[str, Advance], pids: dict[str, int], rounds: int, ticks: int) -> dict[str, object]:
@@ -172,9 +197,8 @@ def _rounds(advances: dict[str, Advance], pids: dict[str, int], rounds: int, tic
     middle = {name: median(values) for name, values in speeds.items()}
     return {
         "ticks_per_s_best": {name: round(value) for name, value in best.items()},
-        "ratio_of_best": round(best["zenoh"] / best["bare"], 3),
-        "ratio_of_medians": round(middle["zenoh"] / middle["bare"], 3),
-        "ratio_to_unpinned_best": round(best["zenoh"] / best["bare_unpinned"], 3),
+        "ratio_of_best": {name: round(best["zenoh"] / best[name], 3) for name in SCHEDULES},
+        "ratio_of_medians": {name: round(middle["zenoh"] / middle[name], 3) for name in SCHEDULES},
         "hub_cpu_us_per_tick": round(1e6 * hub_s / rounds / ticks, 1),
         "process_cpu_us_per_tick": round(1e6 * worker_s / rounds / ticks / (len(pids) - 1), 1),
     }
