@@ -91,7 +91,7 @@ class Conductor:
             if word.message.phase == pb.Visit.DONE:
                 self._copy_errors.visit_done(word.robot, word.message, t_ns)
         self._copy_errors.step(t_ns)
-        self._visits.order_due()
+        self._visits.order_due(t_ns)
         self._world.step(self._truths.take(), self._visits.watching)
 
     def check_progress(self, t_ns: int) -> None:

@@ -9,9 +9,12 @@ from dataclasses import dataclass
 
 from server.hand import Hand, Publish
 from swarm import keys
+from swarm.clock import NS_PER_S
 from swarm.experiment import Experiment, RobotSettings
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
+
+REPEAT_NS = 10 * NS_PER_S
 
 
 @dataclass
@@ -22,6 +25,8 @@ class VisitRecord:
     begun: int = 0
     paths: int = 0
     tracks: int = 0
+    ordered_ns: int = 0
+    """When the order to watch was given last."""
     under_way: bool = False
     carried: bool = False
     """At the observer's place, or on its way there."""
@@ -65,14 +70,15 @@ class Visits:
         elif visit.phase == pb.Visit.DONE:
             self._send_home(record)
 
-    def order_due(self) -> None:
-        """Order every visit that is due and possible now."""
+    def order_due(self, t_ns: int) -> None:
+        """Order every visit that is due and possible; repeat those under way, for an agent that restarted."""
         for record in self._records.values():
             if self._is_due(record) and self._is_possible(record):
                 record.begun += 1
                 record.under_way = True
-                place = self._experiment.observers_place(self._demonstrator(record))
-                self._order(record, pb.Order.WATCH, place)
+                self._order_to_watch(record, t_ns)
+            elif record.under_way and t_ns - record.ordered_ns >= REPEAT_NS:
+                self._order_to_watch(record, t_ns)
 
     def _is_due(self, record: VisitRecord) -> bool:
         moment = record.begun * self._experiment.visits.every_tracks
@@ -91,6 +97,10 @@ class Visits:
         start = Pose(*home.centre(home.grid.start), 0.0)
         self._hand.carry(record.robot.id, start, f"visit {record.begun} is over")
         self._order(record, pb.Order.RUN, start)
+
+    def _order_to_watch(self, record: VisitRecord, t_ns: int) -> None:
+        record.ordered_ns = t_ns
+        self._order(record, pb.Order.WATCH, self._experiment.observers_place(self._demonstrator(record)))
 
     def _order(self, record: VisitRecord, kind: pb.Order.Kind.ValueType, place: Pose) -> None:
         order = pb.Order(

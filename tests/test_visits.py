@@ -9,7 +9,7 @@ import pytest
 from google.protobuf.message import Message
 
 from server.hand import SimulatedHand
-from server.visits import Visits
+from server.visits import REPEAT_NS, Visits
 from swarm import keys
 from swarm.experiment import (
     Experiment,
@@ -45,10 +45,10 @@ class Conducted:
     def _publish(self, topic: Topic[Any], message: Message, robot: str) -> None:
         self.sent.append((topic, message, robot))
 
-    def due(self) -> list[str]:
+    def due(self, t_ns: int = 0) -> list[str]:
         """Who is ordered to watch now."""
         self.sent.clear()
-        self.visits.order_due()
+        self.visits.order_due(t_ns)
         return [robot for _, order, robot in self.orders() if order.kind == pb.Order.WATCH]
 
     def orders(self) -> list[tuple[Topic[Any], pb.Order, str]]:
@@ -114,6 +114,18 @@ def test_a_visit_is_one_order_while_it_lasts() -> None:
     conducted.due()
     conducted.visits.track_ended("pupil", 5)
     assert conducted.due() == []
+
+
+def test_an_agent_that_restarts_during_a_visit_hears_the_order_again() -> None:
+    conducted = Conducted(EXPERT, PUPIL)
+    conducted.due()
+    conducted.says("pupil", pb.Visit.READY, 1)
+    assert conducted.due(REPEAT_NS - 1) == []
+    assert conducted.due(REPEAT_NS) == ["pupil"]
+    ((_, order, _),) = conducted.orders()
+    assert order.visit == 1
+    conducted.make_visit("pupil", 1)
+    assert conducted.due(3 * REPEAT_NS) == []
 
 
 def test_a_demonstrator_has_one_watcher_at_a_time() -> None:
