@@ -13,10 +13,10 @@ from server.batch import Batch
 from swarm.bus import Bus
 from swarm.clock import NS_PER_S
 from swarm.errors import RunFailedError
+from swarm.frames import Answer, FrameError, pack_item, pack_tick, unpack_answer
 from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
 from swarm.link import Sequencer
-from swarm.lockstep import EPOCH, key_matches, parse_done
-from swarm.messages import swarm_pb2 as pb
+from swarm.lockstep import EPOCH, key_matches
 from swarm.messages.header import Header, Item
 
 M = TypeVar("M", bound=Message)
@@ -58,7 +58,7 @@ class LockstepHub:
         self._readers: dict[str, tuple[str, ...]] = {}
         self._sequencer = Sequencer()
         self._own: list[Item] = []
-        self._next_ticks = {name: pb.Tick() for name in processes}
+        self._to_deliver: dict[str, list[bytes]] = {name: [] for name in processes}
         self._frames: dict[str, bytes] = {}
         self.number = 0
         """The exchange that is under way: one tick, unless there are more to an exchange."""
@@ -72,9 +72,9 @@ class LockstepHub:
         """Wait for every process's HELLO; the first tick answers it."""
         deadline_s = self._monotonic_s() + GREETED_WITHIN_S
         while missing := sorted(set(self._senders) - set(self._subscriptions)):
-            done = parse_done(self._inbox.wait())
-            if done and done.HasField("hello") and done.process in self._senders:
-                self._subscriptions[done.process] = list(done.hello.subscriptions)
+            greeting = self._next_answer()
+            if greeting and greeting.number == 0 and greeting.process in self._senders:
+                self._subscriptions[greeting.process] = [item.key for item in greeting.items]
             self._check()
             if self._monotonic_s() > deadline_s:
                 raise RunFailedError(f"{', '.join(missing)} did not start within {GREETED_WITHIN_S:g} s")
@@ -90,13 +90,11 @@ class LockstepHub:
         """Send the next tick, and with it to each process what it listens to."""
         first_ns = self.t_ns + self._tick_ns
         self.number += 1
-        more_t_ns = range(first_ns + self._tick_ns, self.t_ns + 1, self._tick_ns)
-        start = pb.Tick(number=self.number, t_ns=first_ns, more_t_ns=more_t_ns).SerializeToString()
-        for name, tick in self._next_ticks.items():
-            # Serialized messages merge when they are joined: the common start is made once.
-            self._frames[name] = start + tick.SerializeToString()
+        start = pack_tick(self.number, first_ns, self._tick_ns, self._ticks)
+        for name, items in self._to_deliver.items():
+            self._frames[name] = start + b"".join(items)
             self._senders[name].put(self._frames[name])
-            del tick.items[:]
+            items.clear()
         # Zenoh sends from a thread of its own, which would wait until this one rests.
         os.sched_yield()
 
@@ -106,31 +104,31 @@ class LockstepHub:
         items, self._own = self._own, []
         began_s = named_s = self._monotonic_s()
         while waiting:
-            payload = self._inbox.wait()
-            if not payload:
+            answer = self._next_answer()
+            if answer is None:
                 named_s = self._look_for(waiting, began_s, named_s)
-                continue
-            done = parse_done(payload)
-            if done and done.number == self.number and done.process in waiting:
-                items += self._taken_in(done)
-                waiting.discard(done.process)
+            elif answer.number == self.number and answer.process in waiting:
+                waiting.discard(answer.process)
+                items += answer.items
+                for item in answer.items:
+                    self._deliver(item)
         return Batch(self.t_ns, items)
 
-    def _taken_in(self, done: pb.Done) -> list[Item]:
-        """A process's messages, which are ready for their readers while other processes still work."""
-        items = [
-            Item(item.key, Header(item.epoch, item.sequence, item.t_ns), item.payload) for item in done.items
-        ]
-        for item in items:
-            self._deliver(item)
-        return items
+    def _next_answer(self) -> Answer | None:
+        """None when nothing has come for a while, or no answer."""
+        payload = self._inbox.wait()
+        try:
+            return unpack_answer(payload) if payload else None
+        except FrameError:
+            return None
 
     def _deliver(self, item: Item) -> None:
-        for name in self._readers_of(item.key):
-            key, header, payload = item
-            self._next_ticks[name].items.add(
-                key=key, epoch=header.epoch, sequence=header.sequence, t_ns=header.t_ns, payload=payload
-            )
+        """Put a message before its readers while other processes still work."""
+        readers = self._readers_of(item.key)
+        if readers:
+            packed = pack_item(*item)
+            for name in readers:
+                self._to_deliver[name].append(packed)
 
     def unsent(self) -> Batch:
         own, self._own = self._own, []
@@ -138,7 +136,7 @@ class LockstepHub:
 
     def finish(self) -> None:
         """End every process's ticks."""
-        end = pb.Tick(number=self.number + 1, end=True).SerializeToString()
+        end = pack_tick(self.number + 1, self.t_ns, self._tick_ns, steps=0)
         for sender in self._senders.values():
             sender.put(end)
 

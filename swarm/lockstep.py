@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import os
-import socket
 from collections.abc import Iterator
 from typing import Any, TypeVar
 
-from google.protobuf.message import DecodeError, Message
+from google.protobuf.message import Message
 
 from swarm.bus import Bus
 from swarm.errors import RunFailedError
 from swarm.feed import Feed
+from swarm.frames import Tick, pack_answer, pack_item, unpack_tick
 from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
 from swarm.link import Sequencer
-from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header, Item
 
 M = TypeVar("M", bound=Message)
@@ -39,7 +37,7 @@ class LockstepLink:
         self._feeds: list[tuple[str, Feed[Any]]] = []
         self._routes: dict[str, tuple[Feed[Any], ...]] = {}
         self._sequencer = Sequencer()
-        self._message = pb.Done(process=process)
+        self._published: list[bytes] = []
         self._answer = b""
         self._number = 0
         self._t_ns = 0
@@ -53,28 +51,28 @@ class LockstepLink:
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         key = topic.key(robot)
-        number = self._sequencer.following(key)
-        payload = message.SerializeToString()
-        self._message.items.add(key=key, epoch=EPOCH, sequence=number, t_ns=self._t_ns, payload=payload)
+        header = Header(EPOCH, self._sequencer.following(key), self._t_ns)
+        self._published.append(pack_item(key, header, message.SerializeToString()))
 
     def ticks(self) -> Iterator[int]:
-        while not (tick := self._next_tick()).end:
+        while (tick := self._next_tick()).steps:
             for t_ns, items in _steps(tick):
                 self._t_ns = t_ns
                 for item in items:
                     self._deliver(*item)
                 yield t_ns
             self._number = tick.number
-            self._answer = self._answer_to(tick.number)
+            self._answer = pack_answer(tick.number, self._process) + b"".join(self._published)
+            self._published.clear()
             self._send_answer()
 
-    def _next_tick(self) -> pb.Tick:
+    def _next_tick(self) -> Tick:
         silent_wakes = 0
         while True:
             payload = self._ticks.wait()
             if payload:
-                tick = pb.Tick.FromString(payload)
-                if tick.number > self._number or tick.end:
+                tick = unpack_tick(payload)
+                if tick.number > self._number:
                     return tick
                 self._send_answer()
                 continue
@@ -89,13 +87,9 @@ class LockstepLink:
 
     def _greet(self) -> None:
         """HELLO, repeated until the first tick: a message sent right after declaring may be lost."""
-        hello = pb.Hello(
-            process=self._process,
-            pid=os.getpid(),
-            host=socket.gethostname(),
-            subscriptions=sorted({key for key, _ in self._feeds}),
-        )
-        self._done.put(pb.Done(process=self._process, hello=hello).SerializeToString())
+        listens_to = sorted({key for key, _ in self._feeds})
+        keys = b"".join(pack_item(key, Header(EPOCH, 0, 0), b"") for key in listens_to)
+        self._done.put(pack_answer(0, self._process) + keys)
 
     def _deliver(self, key: str, header: Header, payload: bytes) -> None:
         feeds = self._routes.get(key)
@@ -106,39 +100,23 @@ class LockstepLink:
         for feed in feeds:
             feed.put(key, header, payload)
 
-    def _answer_to(self, number: int) -> bytes:
-        self._message.number = number
-        answer = self._message.SerializeToString()
-        del self._message.items[:]
-        return answer
-
     def _send_answer(self) -> None:
         if self._answer:
             self._done.put(self._answer)
 
 
-def _steps(tick: pb.Tick) -> Iterator[tuple[int, list[Item]]]:
+def _steps(tick: Tick) -> Iterator[tuple[int, list[Item]]]:
     """The times of an exchange, each with what arrives then: one exchange after it was published."""
-    waiting = sorted(
-        Item(item.key, Header(item.epoch, item.sequence, item.t_ns), item.payload) for item in tick.items
-    )
-    times_ns = [tick.t_ns, *tick.more_t_ns]
-    exchange_ns = (times_ns[-1] - times_ns[0]) // max(1, len(times_ns) - 1) * len(times_ns)
-    for t_ns in times_ns[:-1]:
+    waiting = sorted(tick.items)
+    exchange_ns = tick.steps * tick.step_ns
+    last_ns = tick.t_ns + exchange_ns - tick.step_ns
+    for t_ns in range(tick.t_ns, last_ns, tick.step_ns):
         yield t_ns, [item for item in waiting if item.header.t_ns + exchange_ns <= t_ns]
         waiting = [item for item in waiting if item.header.t_ns + exchange_ns > t_ns]
-    yield times_ns[-1], waiting
+    yield last_ns, waiting
 
 
 def key_matches(expression: str, key: str) -> bool:
     """Whether a key lies in an expression in which `*` stands for one part."""
     wanted, parts = expression.split("/"), key.split("/")
     return len(wanted) == len(parts) and all(a in ("*", b) for a, b in zip(wanted, parts, strict=True))
-
-
-def parse_done(payload: bytes) -> pb.Done | None:
-    """A process's answer, or None if the bytes are none."""
-    try:
-        return pb.Done.FromString(payload)
-    except DecodeError:
-        return None

@@ -12,9 +12,20 @@ from server.lockstep_hub import LockstepHub
 from swarm import keys
 from swarm.bus import Bus, BusSettings
 from swarm.errors import RunFailedError
+from swarm.frames import (
+    Answer,
+    FrameError,
+    Tick,
+    pack_answer,
+    pack_item,
+    pack_tick,
+    unpack_answer,
+    unpack_tick,
+)
 from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery
-from swarm.lockstep import LockstepLink, key_matches, parse_done
+from swarm.lockstep import LockstepLink, key_matches
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages.header import Header, Item
 from swarm.presence import Presence, claim
 from tests.benchmarks.lockstep import free_endpoint
 
@@ -29,8 +40,26 @@ def test_a_star_stands_for_one_part_of_a_key() -> None:
     assert not key_matches("robot/a/pose", "robot/b/pose")
 
 
-def test_bytes_that_are_no_answer_are_none() -> None:
-    assert parse_done(b"\xff\xff\xff") is None
+ITEMS = [Item("robot/a/move", Header(1, 2, 3), b"payload"), Item("run/state", Header(1, 1, -1), b"")]
+
+
+def test_a_frame_says_what_was_packed() -> None:
+    items = b"".join(pack_item(*item) for item in ITEMS)
+    assert unpack_tick(pack_tick(7, 300, 100, 2) + items) == Tick(7, 300, 100, 2, ITEMS)
+    assert unpack_answer(pack_answer(7, "robots-1") + items) == Answer(7, "robots-1", ITEMS)
+    assert unpack_answer(pack_answer(0, "tracker")) == Answer(0, "tracker", [])
+
+
+def test_no_cut_frame_is_read_as_another() -> None:
+    frame = pack_answer(7, "robots-1") + pack_item(*ITEMS[0])
+    whole = len(pack_answer(7, "robots-1"))
+    for size in (size for size in range(len(frame)) if size != whole):
+        with pytest.raises(FrameError, match="no answer"):
+            unpack_answer(frame[:size])
+    with pytest.raises(FrameError, match="no answer"):
+        unpack_answer(b"\xff" * 100)
+    with pytest.raises(FrameError, match="no tick"):
+        unpack_tick(b"\xff" * 100)
 
 
 class Swarm:
@@ -104,13 +133,12 @@ def test_a_repeated_tick_gets_the_same_answer_and_is_not_stepped_again(swarm: Sw
     hub.gather()
     answers = swarm.bus.inbox(LOCKSTEP_DONE, Delivery.EVERY, wake_s=0.05)
     again = swarm.bus.sender(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
-    again.put(pb.Tick(number=1, t_ns=100_000_000).SerializeToString())
+    again.put(pack_tick(1, 100_000_000, 100_000_000, 1))
     while not (payload := answers.wait()):
         pass
-    answer = parse_done(payload)
-    assert answer is not None
+    answer = unpack_answer(payload)
     assert answer.number == 1
-    assert [(item.key, item.sequence) for item in answer.items] == [("robot/a/move", 1)]
+    assert [(item.key, item.header.sequence) for item in answer.items] == [("robot/a/move", 1)]
     hub.advance()
     assert [item.header.sequence for item in hub.gather().items] == [2]
     hub.finish()
@@ -132,8 +160,7 @@ def test_a_silent_process_is_warned_of_and_given_up(swarm: Swarm) -> None:
     hub = LockstepHub(
         swarm.bus, ["a", "silent"], TICK_S, lambda: None, swarm.warnings.append, lambda: float(next(times_s))
     )
-    greeting = pb.Done(process="silent", hello=pb.Hello(process="silent")).SerializeToString()
-    swarm.bus.sender(LOCKSTEP_DONE, Delivery.EVERY).put(greeting)
+    swarm.bus.sender(LOCKSTEP_DONE, Delivery.EVERY).put(pack_answer(0, "silent"))
     hub.start()
     hub.advance()
     with pytest.raises(RunFailedError, match="silent did not answer tick 1 within 30 s"):
