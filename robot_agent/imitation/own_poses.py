@@ -26,11 +26,12 @@ class OwnPoses:
     def at(self, t_ns: int) -> Pose:
         """The pose at a time, interpolated; the oldest or the newest known beyond. IndexError without any."""
         after = bisect_left(self._poses, t_ns, key=lambda known: known[0])
-        if after == 0:
-            return self._poses[0][1]
         if after == len(self._poses):
             return self._poses[-1][1]
-        (before_ns, before), (after_ns, later) = self._poses[after - 1], self._poses[after]
+        after_ns, later = self._poses[after]
+        if after == 0 or after_ns == t_ns:
+            return later
+        before_ns, before = self._poses[after - 1]
         return _between(before, later, (t_ns - before_ns) / (after_ns - before_ns))
 
 
