@@ -63,7 +63,7 @@ def test_zenoh_is_imported_by_the_bus_alone() -> None:
 
 
 def test_mcap_is_imported_by_the_recorder_and_the_log_reader_alone() -> None:
-    assert importers("small_mcap") == {"server/recorder.py"}
+    assert importers("small_mcap") == {"server/recorder.py", "swarm/analysis/log_recover.py"}
     readers = importers("mcap")
     assert readers
     assert all(name.startswith("swarm/analysis/log_") for name in readers)

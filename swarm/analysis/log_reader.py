@@ -6,32 +6,22 @@ from __future__ import annotations
 
 import os
 import stat
-import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
-from io import BufferedReader, BytesIO
+from io import BufferedReader
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
-from mcap.data_stream import ReadDataStream
-from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, Message, Metadata, Schema, Statistics
 
 from swarm.analysis.log_chunks import DamagedChunkError, Entry, split, unpack
 from swarm.analysis.log_framing import FramingError, Record, records, summary_records
 from swarm.analysis.log_parts import LogChannel, Part, PendingPart, Wanted, everything
+from swarm.analysis.log_records import BROKEN, decoded
 from swarm.errors import UserError
 
 MAX_EPOCH = 2**63 - 1
-_BROKEN = (McapError, DamagedChunkError, ValueError, OverflowError, struct.error)
-_READ: dict[int, Any] = {
-    Opcode.SCHEMA: Schema.read,
-    Opcode.CHANNEL: Channel.read,
-    Opcode.CHUNK: Chunk.read,
-    Opcode.METADATA: Metadata.read,
-    Opcode.STATISTICS: Statistics.read,
-}
 
 
 class LogError(UserError):
@@ -109,24 +99,22 @@ class LogReader:
         """The parts that a record completes. Of one that is damaged nothing is taken."""
         try:
             parts = list(self._contents(record))
-        except _BROKEN as error:
+        except BROKEN as error:
             self._note(record.offset_bytes, error)
         else:
             yield from parts
 
     def _contents(self, record: Record) -> Iterator[Part]:
-        if record.opcode == Opcode.MESSAGE:
-            message = Message.read(_stream(record.body), len(record.body))
-            entry = (message.sequence, message.log_time, message.publish_time, message.data)
-            yield from self._add({message.channel_id: [entry]})
-            return
-        found = _decoded(record.opcode, record.body)
-        if isinstance(found, Chunk):
+        found = decoded(record.opcode, record.body)
+        if isinstance(found, Message):
+            entry = (found.sequence, found.log_time, found.publish_time, found.data)
+            yield from self._add({found.channel_id: [entry]})
+        elif isinstance(found, Chunk):
             content = split(
                 unpack(found.compression, found.data, found.uncompressed_size, found.uncompressed_crc)
             )
             for definition in content.definitions:
-                self._define(_decoded(definition.opcode, definition.body))
+                self._define(decoded(definition.opcode, definition.body))
             yield from self._add(content.entries)
         else:
             self._define(found)
@@ -171,8 +159,8 @@ class LogReader:
         try:
             for record in summary_records(file):
                 if record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-                    self._define(_decoded(record.opcode, record.body))
-        except _BROKEN as error:
+                    self._define(decoded(record.opcode, record.body))
+        except BROKEN as error:
             self._note(0, f"the index is damaged: {error}")
         file.seek(0)
 
@@ -203,13 +191,3 @@ def _kind(mode: int) -> str:
     if stat.S_ISREG(mode):
         return "it is empty (0 bytes)"
     return "it is a directory" if stat.S_ISDIR(mode) else "it is no regular file"
-
-
-def _decoded(opcode: int, body: bytes) -> object:
-    """A record of a kind that is needed here; None for any other."""
-    read = _READ.get(opcode)
-    return read(_stream(body)) if read else None
-
-
-def _stream(body: bytes) -> ReadDataStream:
-    return ReadDataStream(BytesIO(body))

@@ -10,6 +10,7 @@ from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
 from swarm.cli.durations import durations_command
+from swarm.cli.recover import recover_command
 from swarm.cli.reproduce import reproduce_command
 from swarm.cli.simulate import simulate_command
 from swarm.cli.trials import trials_command
@@ -36,6 +37,7 @@ app.command("analyze")(analyze_command)
 app.command("trials")(trials_command)
 app.command("durations")(durations_command)
 app.command("check")(check_command)
+app.command("recover")(recover_command)
 
 
 def run() -> None:

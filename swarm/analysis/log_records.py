@@ -1,0 +1,33 @@
+"""The records of a log that are needed here, decoded."""
+
+from __future__ import annotations
+
+import struct
+from io import BytesIO
+from typing import Any
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Channel, Chunk, Message, Metadata, Schema, Statistics
+
+from swarm.analysis.log_chunks import DamagedChunkError
+
+BROKEN = (McapError, DamagedChunkError, ValueError, OverflowError, struct.error)
+"""What a damaged record raises when it is decoded."""
+_READ: dict[int, Any] = {
+    Opcode.SCHEMA: Schema.read,
+    Opcode.CHANNEL: Channel.read,
+    Opcode.CHUNK: Chunk.read,
+    Opcode.METADATA: Metadata.read,
+    Opcode.STATISTICS: Statistics.read,
+}
+
+
+def decoded(opcode: int, body: bytes) -> object:
+    """A record of a kind that is needed here; None for any other."""
+    stream = ReadDataStream(BytesIO(body))
+    if opcode == Opcode.MESSAGE:
+        return Message.read(stream, len(body))
+    read = _READ.get(opcode)
+    return read(stream) if read else None

@@ -1,0 +1,126 @@
+"""Makes a damaged log whole: all that can be read of it, in a new file with an index and checksums."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from mcap.opcode import Opcode
+from mcap.records import Channel, Chunk, Message, Metadata, Schema
+from small_mcap import CompressionType, McapWriter
+
+from swarm.analysis.log_chunks import DamagedChunkError, unpack
+from swarm.analysis.log_framing import FramingError, Record, records
+from swarm.analysis.log_reader import LogError, open_log
+from swarm.analysis.log_records import BROKEN, decoded
+from swarm.errors import UserError
+
+CHUNK_BYTES = 256 * 1024
+_RECORD = struct.Struct("<BQ")
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """What came of a log: the messages in the new file, and why what is missing could not be read."""
+
+    messages: int
+    lost: list[str]
+
+
+def recover_log(damaged: Path, whole: Path) -> Recovery:
+    """Copy every record that can be read; of a damaged chunk nothing is copied.
+
+    LogError for what is no log or holds no message that can be read, UserError if `whole` cannot be made.
+    """
+    with open_log(damaged) as source, _new_file(whole) as target:
+        copy = _Copy(target)
+        copy.take_all(source)
+        copy.finish()
+    if copy.messages == 0:
+        whole.unlink()
+        reason = f": {copy.lost[0]}" if copy.lost else ""
+        raise LogError(damaged, f"no message can be read from this log{reason}")
+    return Recovery(copy.messages, copy.lost)
+
+
+def _new_file(path: Path) -> BinaryIO:
+    try:
+        return path.open("xb")
+    except FileExistsError as error:
+        raise UserError(f"{path}: exists already; nothing is overwritten, choose another --out") from error
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written ({error.strerror}); choose another --out") from error
+
+
+class _Copy:
+    """The new log while it is written."""
+
+    def __init__(self, target: BinaryIO) -> None:
+        self.messages = 0
+        self.lost: list[str] = []
+        self._writer = McapWriter(target, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
+        self._writer.start(profile="", library="swarm-runtime")
+
+    def take_all(self, source: BinaryIO) -> None:
+        """Every record up to the index, which is made anew, or to where the log cannot be followed."""
+        try:
+            for record in records(source):
+                if record.opcode == Opcode.DATA_END:
+                    break
+                self._take(record)
+        except FramingError as error:
+            self._lose(error, error.offset_bytes)
+
+    def finish(self) -> None:
+        """Write the index."""
+        self._writer.finish()
+
+    def _take(self, record: Record) -> None:
+        try:
+            for found in list(_contents(record)):
+                self._add(found)
+        except BROKEN as error:
+            self._lose(error, record.offset_bytes)
+
+    def _add(self, found: object) -> None:
+        writer = self._writer
+        if isinstance(found, Message):
+            writer.add_message(
+                found.channel_id, found.log_time, found.data, found.publish_time, found.sequence
+            )
+            self.messages += 1
+        elif isinstance(found, Schema) and found.id not in writer.schemas:
+            writer.add_schema(found.id, found.name, found.encoding, found.data)
+        elif isinstance(found, Channel) and found.id not in writer.channels:
+            about = dict(found.metadata)
+            writer.add_channel(found.id, found.topic, found.message_encoding, found.schema_id, about)
+        elif isinstance(found, Metadata):
+            writer.add_metadata(found.name, dict(found.metadata))
+
+    def _lose(self, reason: object, offset_bytes: int) -> None:
+        self.lost.append(f"{reason} (at byte {offset_bytes}, after {self.messages} messages)")
+
+
+def _contents(record: Record) -> Iterator[object]:
+    """What a record holds: one, or all of a chunk."""
+    found = decoded(record.opcode, record.body)
+    if isinstance(found, Chunk):
+        inside = unpack(found.compression, found.data, found.uncompressed_size, found.uncompressed_crc)
+        for opcode, body in _split(inside):
+            yield decoded(opcode, body)
+    else:
+        yield found
+
+
+def _split(inside: bytes) -> Iterator[tuple[int, bytes]]:
+    """Kind and contents of a chunk's records."""
+    at = 0
+    while at < len(inside):
+        opcode, size = _RECORD.unpack_from(inside, at)
+        at += _RECORD.size + size
+        if at > len(inside):
+            raise DamagedChunkError("a record reaches beyond its chunk")
+        yield opcode, inside[at - size : at]

@@ -1,0 +1,32 @@
+"""`swarm recover`: a damaged log, or one whose recorder was killed, made whole."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from swarm.cli.output import print_json, require_extra
+
+
+def recover_command(
+    log: Annotated[Path, typer.Argument(help="A .mcap file.")],
+    out: Annotated[Path | None, typer.Option(help="The new file (LOG with .recovered.mcap).")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")] = False,
+) -> None:
+    """Copy all that can be read of a log into a new file with an index; the old one stays as it is.
+
+    Exit code 0, with what could not be read. 2: it is no log, or nothing can be read.
+    """
+    require_extra("lab", "mcap", "small_mcap")
+    from swarm.analysis.log_recover import recover_log
+
+    whole = out or log.with_suffix(".recovered.mcap")
+    found = recover_log(log, whole)
+    if json:
+        print_json({"log": str(whole), "messages": found.messages, "lost": found.lost})
+        return
+    for reason in found.lost:
+        typer.echo(f"not read: {reason}")
+    typer.echo(f"wrote {whole}: {found.messages:,} messages")
