@@ -15,9 +15,19 @@ SERVER_SHARE = 2
 """The hub and the recorder together use as much time as two robots' processes."""
 
 
+CAN_CHOOSE = hasattr(os, "sched_setaffinity")
+"""Linux can; elsewhere a lockstep runs as the system likes, and slower."""
+
+
 def available_cores() -> list[int]:
     """The cores that this process may use."""
-    return sorted(os.sched_getaffinity(0))
+    return sorted(os.sched_getaffinity(0)) if CAN_CHOOSE else list(range(os.cpu_count() or 1))
+
+
+def keep(pid: int, core: int) -> None:
+    """A process keeps to a core from now on."""
+    if CAN_CHOOSE:
+        os.sched_setaffinity(pid, {core})
 
 
 def spread(processes: int, cores: Sequence[int]) -> list[int]:
@@ -37,6 +47,9 @@ def keeping_to(core: int) -> Iterator[None]:
 
     Processes that are started inside inherit both; afterwards this thread is as it was.
     """
+    if not CAN_CHOOSE:
+        yield
+        return
     cores, policy = os.sched_getaffinity(0), os.sched_getscheduler(0)
     os.sched_setaffinity(0, {core})
     os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 
-from server.cores import available_cores, spread
+from server.cores import available_cores, keep, spread
 from swarm.errors import RunFailedError
 
 LEAVE_WITHIN_S = 5.0
@@ -83,7 +83,7 @@ class Supervisor:
                 process_group=0,
                 env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
             )
-        os.sched_setaffinity(process.pid, {self._cores[number]})
+        keep(process.pid, self._cores[number])
         return process
 
     def _how_ended(self, name: str) -> str:
