@@ -1,6 +1,6 @@
 """Which core each process of a lockstep keeps to, and how it shares the core with the others.
 
-Every tick wakes every process once, and a wake-up across cores costs more than the work of an agent. A
+Every exchange wakes every process once, and a wake-up across cores costs more than the work of an agent. A
 lockstep whose processes hop between cores runs at half the speed or less. A process that is woken also
 waits until the one at work rests (SCHED_BATCH): else nearly every message interrupts somebody.
 """
@@ -50,11 +50,11 @@ def keeping_to(core: int) -> Iterator[None]:
     if not CAN_CHOOSE:
         yield
         return
-    cores, policy = os.sched_getaffinity(0), os.sched_getscheduler(0)
+    cores, policy, parameters = os.sched_getaffinity(0), os.sched_getscheduler(0), os.sched_getparam(0)
     os.sched_setaffinity(0, {core})
     os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
     try:
         yield
     finally:
-        os.sched_setscheduler(0, policy, os.sched_param(0))
+        os.sched_setscheduler(0, policy, parameters)
         os.sched_setaffinity(0, cores)

@@ -1,4 +1,4 @@
-"""Lockstep virtual time, the hub's side: one message to every process a tick, one message back."""
+"""Lockstep virtual time, the hub's side: one message to every process an exchange, one message back."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ GREETED_WITHIN_S = 60.0
 class LockstepHub:
     """Sends numbered ticks and waits for every process's answer.
 
-    What a process publishes in one tick reaches its subscribers with the next; both the batch and the
-    process put a tick's items in order, so that neither load nor the number of processes shows. `check`
-    raises when a process has died; `warn` is told which process does not answer.
+    What is published in one exchange (`ticks_per_exchange` ticks) reaches its subscribers with the next;
+    both the batch and the process put its items in order, so that neither load nor the number of processes
+    shows. `check` raises when a process has died; `warn` is told which process does not answer.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class LockstepHub:
         return self.number * self._ticks * self._tick_ns
 
     def start(self) -> None:
-        """Wait for every process's HELLO; the first tick answers it."""
+        """Wait for every process's greeting; the first tick answers it."""
         deadline_s = self._monotonic_s() + GREETED_WITHIN_S
         while missing := sorted(set(self._senders) - set(self._subscriptions)):
             greeting = self._next_answer()
@@ -101,7 +101,7 @@ class LockstepHub:
     def gather(self) -> Batch:
         """Every message of the tick. A tick that nobody answers is sent again and then given up."""
         waiting = set(self._senders)
-        items, self._own = self._own, []
+        items: list[Item] = []
         began_s = named_s = self._monotonic_s()
         while waiting:
             answer = self._next_answer()
@@ -112,7 +112,8 @@ class LockstepHub:
                 items += answer.items
                 for item in answer.items:
                     self._deliver(item)
-        return Batch(self.t_ns, items)
+        own, self._own = self._own, []
+        return Batch(self.t_ns, items + own)
 
     def _next_answer(self) -> Answer | None:
         """None when nothing has come for a while, or no answer."""

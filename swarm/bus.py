@@ -26,7 +26,8 @@ QUEUE_DEPTH = 65_536
 class BusSettings:
     """How a process reaches the others.
 
-    The hub listens on `endpoint` (tcp/HOST:PORT) and routes; clients connect to it and keep trying.
+    The hub listens on `endpoint` (tcp/HOST:PORT or, on one machine, unixsock-stream/FILE) and routes;
+    clients connect to it and keep trying.
     `config` is a Zenoh configuration file (JSON5) whose values come first, for TLS and access control.
     """
 

@@ -108,7 +108,7 @@ class TrackerSettings:
     noise_rad: Annotated[float, NonNegative] = 0.0087
     """Standard deviation of the heading."""
     latency_s: Annotated[float, Between(0, 5)] = 0.06
-    """At least this late; in lockstep a pose arrives two ticks after it was true."""
+    """At least this late; in lockstep a pose arrives two exchanges after it was true."""
     loss: Annotated[float, Between(0, 1)] = 0.02
     """Share of poses that are missing."""
     blackouts_per_hour: Annotated[float, NonNegative] = 10.0
@@ -123,7 +123,7 @@ class Watching(Enum):
     BEST = "best"
     """320 x 240, edges to a fraction of a pixel, smoothing, and the moves that explain all of it."""
     PAPER = "paper"
-    """160 x 120, the size of the patch in whole pixels, regression lines."""
+    """160 x 120, the number of the patch's pixels, regression lines."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from google.protobuf.message import Message
 from swarm.bus import Bus
 from swarm.errors import RunFailedError
 from swarm.feed import Feed
-from swarm.frames import Tick, pack_answer, pack_item, unpack_tick
+from swarm.frames import FrameError, Tick, pack_answer, pack_item, unpack_tick
 from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
 from swarm.link import Sequencer
 from swarm.messages.header import Header, Item
@@ -24,7 +24,7 @@ EPOCH = 1
 
 
 class LockstepLink:
-    """Steps when the hub says so, and sends everything it published in one message a tick.
+    """Steps when the hub says so, and sends everything it published in one message an exchange.
 
     Ticks are numbered and idempotent: a repeated tick gets the same answer again.
     """
@@ -71,7 +71,7 @@ class LockstepLink:
         while True:
             payload = self._ticks.wait()
             if payload:
-                tick = unpack_tick(payload)
+                tick = self._read(payload)
                 if tick.number > self._number:
                     return tick
                 self._send_answer()
@@ -82,11 +82,17 @@ class LockstepLink:
             if self._number == 0:
                 self._greet()
 
+    def _read(self, payload: bytes) -> Tick:
+        try:
+            return unpack_tick(payload)
+        except FrameError as error:
+            raise RunFailedError(f"{self._process}: the server sent {error}") from error
+
     def _hub_is_alive(self) -> bool:
         return bool(self._bus.alive("alive/server/**"))
 
     def _greet(self) -> None:
-        """HELLO, repeated until the first tick: a message sent right after declaring may be lost."""
+        """Repeated until the first tick: a message sent right after declaring may be lost."""
         listens_to = sorted({key for key, _ in self._feeds})
         keys = b"".join(pack_item(key, Header(EPOCH, 0, 0), b"") for key in listens_to)
         self._done.put(pack_answer(0, self._process) + keys)

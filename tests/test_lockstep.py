@@ -162,8 +162,10 @@ def test_a_silent_process_is_warned_of_and_given_up(swarm: Swarm) -> None:
     )
     swarm.bus.sender(LOCKSTEP_DONE, Delivery.EVERY).put(pack_answer(0, "silent"))
     hub.start()
+    hub.publish(keys.SERVER_EVENT, pb.Event(name="said before"))
     hub.advance()
     with pytest.raises(RunFailedError, match="silent did not answer tick 1 within 30 s"):
         hub.gather()
     assert swarm.warnings[0] == "tick 1 still waits for silent"
+    assert [item.key for item in hub.unsent().items] == ["server/event"], "nothing said is lost"
     hub.finish()

@@ -10,7 +10,7 @@ import pytest
 import zstandard
 
 from swarm.analysis.log_check import check_log
-from swarm.analysis.log_reader import LogReader
+from swarm.analysis.log_reader import LogError, LogReader
 from swarm.analysis.log_recover import recover_log
 from swarm.cli.main import main
 from tests.small_logs import SmallLog
@@ -57,6 +57,28 @@ def test_a_damaged_chunk_costs_its_own_messages(log: Path, tmp_path: Path) -> No
     assert recovery.messages == 30
     assert "checksum" in recovery.lost[0] or "unpack" in recovery.lost[0]
     assert numbers(tmp_path / "new.mcap") == list(range(11, 41))
+
+
+def test_a_damaged_definition_is_taken_from_the_index(log: Path, tmp_path: Path) -> None:
+    """Any byte of what stands before the first message: nothing is lost, or put under another key."""
+    data, whole = log.read_bytes(), numbers(log)
+    first_chunk = data.index(zstandard.FRAME_HEADER)
+    key = b"robot/loner/best_path"
+    places = range(data.index(key) - 30, min(first_chunk, data.index(key) + len(key)))
+    for place in places:
+        broken = bytearray(data)
+        broken[place] ^= 0x10
+        (tmp_path / "broken.mcap").write_bytes(broken)
+        recovered = tmp_path / f"{place}.mcap"
+        try:
+            recovery = recover_log(tmp_path / "broken.mcap", recovered)
+        except LogError:
+            continue
+        keys = {part.channel.key for part in LogReader(recovered).parts()}
+        assert keys == {key.decode()}
+        assert recovery.lost
+        assert numbers(recovered) == whole[: len(numbers(recovered))]
+    assert sum(1 for place in places if (tmp_path / f"{place}.mcap").exists()) > 20
 
 
 def test_the_command_says_what_it_did_and_overwrites_nothing(

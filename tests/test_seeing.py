@@ -15,6 +15,7 @@ from robot_agent.drivers.camera_model import load_camera_model
 from robot_agent.drivers.camera_scene import Body, Post, Rectangle, Scene
 from robot_agent.drivers.camera_sim import SimulatedCamera
 from robot_agent.imitation.colour import ColourTable
+from robot_agent.imitation.cylinder import half_angle_rad
 from robot_agent.imitation.seeing import NotSeen, Reason, Seer, Sighting
 from swarm.errors import UserError
 from swarm.geometry import Pose
@@ -180,6 +181,16 @@ def test_half_of_the_robot_outside_the_image_is_a_coarse_sighting(
     assert answer.range_m == pytest.approx(0.5, abs=3 * answer.range_sd_m)
     assert answer.range_sd_m > 0.01
     assert answer.bearing_rad == pytest.approx(math.radians(bearing_deg), abs=3 * answer.bearing_sd_rad)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_counted_pixels_say_nothing_of_a_robot_that_is_cut_off(side: int) -> None:
+    camera, seer = make_pair("paper", "realistic", "red", 11)
+    answer = sighting(seer.look(frame(camera, body(0.4, 25.0 * side))))
+    assert answer.cut_off
+    visible_rad = math.radians(25.0 * side) - side * half_angle_rad(0.4)
+    visible_px = answer.right_px if side == 1 else answer.left_px
+    assert visible_px == pytest.approx(seer.model.column(visible_rad), abs=1.0)
 
 
 def test_a_sliver_of_the_robot_is_not_enough(camera: SimulatedCamera, seer: Seer) -> None:

@@ -18,8 +18,8 @@ from swarm.geometry import Pose
 from swarm.link import Link
 from swarm.messages import swarm_pb2 as pb
 
-TICKS_REMEMBERED = 20
-"""What a camera shows is that late at most."""
+TICKS_REMEMBERED = 64
+"""What a camera shows comes three exchanges late at most, of at most ten ticks each."""
 
 
 class SimulatedRobot:

@@ -5,23 +5,21 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections import deque
 
-from swarm.clock import NS_PER_S
 from swarm.geometry import Pose, wrap_angle_rad
 
-MEMORY_NS = 2 * NS_PER_S
+POSES_REMEMBERED = 64
+"""Six seconds at ten ticks a second; a simulated frame is at most thirty ticks late."""
 
 
 class OwnPoses:
-    """The robot's own poses of the last two seconds."""
+    """The robot's own poses at the last ticks."""
 
     def __init__(self) -> None:
-        self._poses: deque[tuple[int, Pose]] = deque()
+        self._poses: deque[tuple[int, Pose]] = deque(maxlen=POSES_REMEMBERED)
 
     def add(self, pose: Pose, t_ns: int) -> None:
         """Call in the order of time."""
         self._poses.append((t_ns, pose))
-        while self._poses[0][0] < t_ns - MEMORY_NS:
-            self._poses.popleft()
 
     def at(self, t_ns: int) -> Pose:
         """The pose at a time, interpolated; the oldest or the newest known beyond. IndexError without any."""

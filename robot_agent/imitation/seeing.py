@@ -33,6 +33,7 @@ from robot_agent.imitation.shape import (
     fits_part_of_skirt,
     fits_skirt,
     sides_by_size,
+    sides_of_box,
 )
 from swarm.errors import UserError, nearest
 
@@ -174,7 +175,8 @@ class Seer:
         left_cut, right_cut = blob.left < BORDER_PX, blob.right > self.model.width - BORDER_PX
         if left_cut and right_cut:
             return Reason.CUT_OFF
-        left, right = self._edges(words, blob)
+        whole = not (left_cut or right_cut)
+        left, right = self._edges(words, blob, whole=whole)
         left, right = None if left_cut else left, None if right_cut else right
         if left is not None and right is not None:
             return self._from_both_edges(t_ns, blob, left, right)
@@ -190,9 +192,9 @@ class Seer:
         beside = (words[rows, blob.left - 4 : blob.left - 1], words[rows, blob.right + 1 : blob.right + 4])
         return any(self._is_skirt[columns].mean() > LIKE_PART for columns in beside)
 
-    def _edges(self, words: Words, blob: Blob) -> tuple[float | None, float | None]:
+    def _edges(self, words: Words, blob: Blob, *, whole: bool) -> tuple[float | None, float | None]:
         if not self.profile.sub_pixel:
-            return sides_by_size(blob)
+            return sides_by_size(blob) if whole else sides_of_box(blob)
         edges = self._finder.find(words, blob)
         return edges.left, edges.right
 

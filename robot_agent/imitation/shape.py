@@ -62,3 +62,8 @@ def sides_by_size(blob: Blob) -> tuple[float, float]:
     width_by_height = 2 * SKIRT_RADIUS_M / (SKIRT_TOP_M - SKIRT_BOTTOM_M)
     half_px = (math.sqrt(width_by_height * blob.area) + SHRUNK_PX) / 2
     return middle_px - half_px, middle_px + half_px
+
+
+def sides_of_box(blob: Blob) -> tuple[float, float]:
+    """Columns of the two sides of a patch of which a part is out of sight: the size says nothing there."""
+    return blob.left - 0.5 - SHRUNK_PX / 2, blob.right - 0.5 + SHRUNK_PX / 2

@@ -18,7 +18,7 @@ from swarm.experiment import Experiment
 from swarm.geometry import Compartment, Grid, Move, Pose
 
 FIX_LATE_TICKS = 2
-"""As in a run: a pose arrives two ticks after it was true."""
+"""As in a run with one tick an exchange: a pose arrives two exchanges after it was true."""
 FIRST_REST_S = (4.0, 4.5)
 """Long enough for an observer that looks the wrong way to find the demonstrator before it moves."""
 REST_S = (1.5, 2.0)

@@ -13,7 +13,7 @@ from mcap.records import Channel, Chunk, Message, Metadata, Schema
 from small_mcap import CompressionType, McapWriter
 
 from swarm.analysis.log_chunks import DamagedChunkError, unpack
-from swarm.analysis.log_framing import FramingError, Record, records
+from swarm.analysis.log_framing import FramingError, Record, records, summary_records
 from swarm.analysis.log_reader import LogError, open_log
 from swarm.analysis.log_records import BROKEN, decoded
 from swarm.errors import UserError
@@ -37,8 +37,12 @@ def recover_log(damaged: Path, whole: Path) -> Recovery:
     """
     with open_log(damaged) as source, _new_file(whole) as target:
         copy = _Copy(target)
-        copy.take_all(source)
-        copy.finish()
+        try:
+            copy.take_all(source)
+            copy.finish()
+        except BaseException:
+            whole.unlink()
+            raise
     if copy.messages == 0:
         whole.unlink()
         reason = f": {copy.lost[0]}" if copy.lost else ""
@@ -65,7 +69,12 @@ class _Copy:
         self._writer.start(profile="", library="swarm-runtime")
 
     def take_all(self, source: BinaryIO) -> None:
-        """Every record up to the index, which is made anew, or to where the log cannot be followed."""
+        """Every record up to the index, which is made anew, or to where the log cannot be followed.
+
+        The index repeats the schemas and channels: if it is there, it is believed, because a single one
+        of them has no checksum.
+        """
+        self._take_definitions_of_index(source)
         try:
             for record in records(source):
                 if record.opcode == Opcode.DATA_END:
@@ -78,27 +87,49 @@ class _Copy:
         """Write the index."""
         self._writer.finish()
 
-    def _take(self, record: Record) -> None:
+    def _take_definitions_of_index(self, source: BinaryIO) -> None:
         try:
-            for found in list(_contents(record)):
-                self._add(found)
+            for record in list(summary_records(source)):
+                if record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+                    self._add([decoded(record.opcode, record.body)])
+        except BROKEN as error:
+            self._lose(f"the index is damaged: {error}", 0)
+        source.seek(0)
+
+    def _take(self, record: Record) -> None:
+        """All of a record, or nothing if any of it makes no sense."""
+        try:
+            found = list(_contents(record))
+            self._check(found)
+            self._add(found)
         except BROKEN as error:
             self._lose(error, record.offset_bytes)
 
-    def _add(self, found: object) -> None:
+    def _check(self, found: list[object]) -> None:
+        """Raises one of BROKEN for a definition that contradicts an earlier one, or a message without one."""
+        channels = set(self._writer.channels)
+        for one in found:
+            if isinstance(one, Channel):
+                known = self._writer.channels.get(one.id)
+                if known and (known.topic, known.schema_id) != (one.topic, one.schema_id):
+                    raise DamagedChunkError(f"channel {one.id} is defined twice, for two different keys")
+                channels.add(one.id)
+            elif isinstance(one, Message) and one.channel_id not in channels:
+                raise DamagedChunkError(f"a message of channel {one.channel_id}, which is not defined")
+
+    def _add(self, found: list[object]) -> None:
         writer = self._writer
-        if isinstance(found, Message):
-            writer.add_message(
-                found.channel_id, found.log_time, found.data, found.publish_time, found.sequence
-            )
-            self.messages += 1
-        elif isinstance(found, Schema) and found.id not in writer.schemas:
-            writer.add_schema(found.id, found.name, found.encoding, found.data)
-        elif isinstance(found, Channel) and found.id not in writer.channels:
-            about = dict(found.metadata)
-            writer.add_channel(found.id, found.topic, found.message_encoding, found.schema_id, about)
-        elif isinstance(found, Metadata):
-            writer.add_metadata(found.name, dict(found.metadata))
+        for one in found:
+            if isinstance(one, Message):
+                writer.add_message(one.channel_id, one.log_time, one.data, one.publish_time, one.sequence)
+                self.messages += 1
+            elif isinstance(one, Schema) and one.id not in writer.schemas:
+                writer.add_schema(one.id, one.name, one.encoding, one.data)
+            elif isinstance(one, Channel) and one.id not in writer.channels:
+                about = dict(one.metadata)
+                writer.add_channel(one.id, one.topic, one.message_encoding, one.schema_id, about)
+            elif isinstance(one, Metadata):
+                writer.add_metadata(one.name, dict(one.metadata))
 
     def _lose(self, reason: object, offset_bytes: int) -> None:
         self.lost.append(f"{reason} (at byte {offset_bytes}, after {self.messages} messages)")

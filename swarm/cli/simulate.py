@@ -32,7 +32,7 @@ def simulate_command(
     json: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")] = False,
 ) -> None:
     """Run a simulated swarm: separate processes for agents, tracker and server, and a complete log."""
-    require_extra("lab", "mcap", "rich")
+    require_extra("lab", "small_mcap", "rich")
     options = {"--out": out, "--seed": seed, "--moves": moves, "--speed": speed, "--processes": processes}
     given = [f"{name}={value}" for name, value in options.items() if value is not None]
     command = [sys.executable, "-m", "server", str(experiment), *given, *(["--json"] if json else [])]
