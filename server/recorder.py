@@ -12,8 +12,8 @@ from google.protobuf.message import Message
 from small_mcap import CompressionType, McapWriter
 
 from server.batch import Batch
-from swarm.errors import UserError
 from swarm.keys import topic_of
+from swarm.new_file import new_file
 
 CHUNK_BYTES = 256 * 1024
 
@@ -26,12 +26,7 @@ class Recorder:
     """
 
     def __init__(self, path: Path, metadata: Mapping[str, Mapping[str, str]]) -> None:
-        try:
-            self._file = path.open("xb")
-        except FileExistsError as error:
-            raise UserError(
-                f"{path}: exists already; nothing is overwritten, choose another --out"
-            ) from error
+        self._file = new_file(path)
         self.path = path
         self.messages = 0
         self.unknown_keys: dict[str, int] = {}

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robot_agent.imitation.observation import ObservedPosition, position_from_sighting
+from robot_agent.rehearsal import drive
 from swarm.geometry import Compartment, Grid, Move, Pose, wrap_angle_rad
 
 Rng = np.random.Generator
@@ -95,15 +96,7 @@ def driven_m(length_m: float, since_s: float, speed_m_s: float) -> float:
 
 def random_moves(rng: Rng, count: int = 5, grid: Grid = COMPARTMENT.grid) -> tuple[int, tuple[Move, ...]]:
     """A start cell and moves that stay inside the grid and out of the goal cell."""
-    start = state = int(rng.integers(grid.goal))
-    moves: list[Move] = []
-    while len(moves) < count:
-        move = Move(int(rng.integers(len(Move))))
-        entered = grid.neighbour(state, move)
-        if entered is not None and entered != grid.goal:
-            moves.append(move)
-            state = entered
-    return start, tuple(moves)
+    return drive.random_moves(rng, grid, count)
 
 
 def expert_moves(rng: Rng, count: int = 5, grid: Grid = COMPARTMENT.grid) -> tuple[int, tuple[Move, ...]]:
@@ -223,13 +216,3 @@ def _sighting(
         t_ns,
         own_heading_sd_rad=0.0,
     )
-
-
-def edit_distance(one: Sequence[Move], other: Sequence[Move]) -> int:
-    """Levenshtein: how many moves must be inserted, removed or replaced."""
-    row = list(range(len(other) + 1))
-    for i, a in enumerate(one, start=1):
-        above, row = row, [i]
-        for j, b in enumerate(other, start=1):
-            row.append(min(above[j - 1] + (a != b), above[j] + 1, row[j - 1] + 1))
-    return row[-1]

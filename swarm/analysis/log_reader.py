@@ -16,9 +16,9 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, Message, Metadata, Schema, Statistics
 
 from swarm.analysis.log_chunks import DamagedChunkError, Entry, split, unpack
-from swarm.analysis.log_framing import FramingError, Record, records, summary_records
+from swarm.analysis.log_framing import FramingError, Record, records
 from swarm.analysis.log_parts import LogChannel, Part, PendingPart, Wanted, everything
-from swarm.analysis.log_records import BROKEN, decoded
+from swarm.analysis.log_records import BROKEN, decoded, indexed_definitions
 from swarm.errors import UserError
 
 MAX_EPOCH = 2**63 - 1
@@ -157,9 +157,8 @@ class LogReader:
     def _know_indexed_channels(self, file: BinaryIO) -> None:
         """The index repeats every channel: a damaged first chunk then costs no other."""
         try:
-            for record in summary_records(file):
-                if record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-                    self._define(decoded(record.opcode, record.body))
+            for definition in indexed_definitions(file):
+                self._define(definition)
         except BROKEN as error:
             self._note(0, f"the index is damaged: {error}")
         file.seek(0)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterator
 from io import BytesIO
-from typing import Any
+from typing import Any, BinaryIO
 
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
@@ -12,6 +13,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, Message, Metadata, Schema, Statistics
 
 from swarm.analysis.log_chunks import DamagedChunkError
+from swarm.analysis.log_framing import summary_records
 
 BROKEN = (McapError, DamagedChunkError, ValueError, OverflowError, struct.error)
 """What a damaged record raises when it is decoded."""
@@ -31,3 +33,10 @@ def decoded(opcode: int, body: bytes) -> object:
         return Message.read(stream, len(body))
     read = _READ.get(opcode)
     return read(stream) if read else None
+
+
+def indexed_definitions(file: BinaryIO) -> Iterator[object]:
+    """The schemas and channels that the index repeats; raises one of BROKEN if it makes no sense."""
+    for record in summary_records(file):
+        if record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            yield decoded(record.opcode, record.body)

@@ -13,10 +13,10 @@ from mcap.records import Channel, Chunk, Message, Metadata, Schema
 from small_mcap import CompressionType, McapWriter
 
 from swarm.analysis.log_chunks import DamagedChunkError, unpack
-from swarm.analysis.log_framing import FramingError, Record, records, summary_records
-from swarm.analysis.log_reader import LogError, open_log
-from swarm.analysis.log_records import BROKEN, decoded
-from swarm.errors import UserError
+from swarm.analysis.log_framing import FramingError, Record, records
+from swarm.analysis.log_reader import Damage, LogError, open_log
+from swarm.analysis.log_records import BROKEN, decoded, indexed_definitions
+from swarm.new_file import new_file
 
 CHUNK_BYTES = 256 * 1024
 _RECORD = struct.Struct("<BQ")
@@ -27,7 +27,7 @@ class Recovery:
     """What came of a log: the messages in the new file, and why what is missing could not be read."""
 
     messages: int
-    lost: list[str]
+    lost: list[Damage]
 
 
 def recover_log(damaged: Path, whole: Path) -> Recovery:
@@ -35,7 +35,7 @@ def recover_log(damaged: Path, whole: Path) -> Recovery:
 
     LogError for what is no log or holds no message that can be read, UserError if `whole` cannot be made.
     """
-    with open_log(damaged) as source, _new_file(whole) as target:
+    with open_log(damaged) as source, new_file(whole) as target:
         copy = _Copy(target)
         try:
             copy.take_all(source)
@@ -50,21 +50,12 @@ def recover_log(damaged: Path, whole: Path) -> Recovery:
     return Recovery(copy.messages, copy.lost)
 
 
-def _new_file(path: Path) -> BinaryIO:
-    try:
-        return path.open("xb")
-    except FileExistsError as error:
-        raise UserError(f"{path}: exists already; nothing is overwritten, choose another --out") from error
-    except OSError as error:
-        raise UserError(f"{path}: cannot be written ({error.strerror}); choose another --out") from error
-
-
 class _Copy:
     """The new log while it is written."""
 
     def __init__(self, target: BinaryIO) -> None:
         self.messages = 0
-        self.lost: list[str] = []
+        self.lost: list[Damage] = []
         self._writer = McapWriter(target, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._writer.start(profile="", library="swarm-runtime")
 
@@ -89,9 +80,7 @@ class _Copy:
 
     def _take_definitions_of_index(self, source: BinaryIO) -> None:
         try:
-            for record in list(summary_records(source)):
-                if record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-                    self._add([decoded(record.opcode, record.body)])
+            self._add(list(indexed_definitions(source)))
         except BROKEN as error:
             self._lose(f"the index is damaged: {error}", 0)
         source.seek(0)
@@ -132,7 +121,7 @@ class _Copy:
                 writer.add_metadata(one.name, dict(one.metadata))
 
     def _lose(self, reason: object, offset_bytes: int) -> None:
-        self.lost.append(f"{reason} (at byte {offset_bytes}, after {self.messages} messages)")
+        self.lost.append(Damage(offset_bytes, self.messages, str(reason)))
 
 
 def _contents(record: Record) -> Iterator[object]:

@@ -25,7 +25,7 @@ def recover_command(
     whole = out or log.with_suffix(".recovered.mcap")
     found = recover_log(log, whole)
     if json:
-        print_json({"log": str(whole), "messages": found.messages, "lost": found.lost})
+        print_json({"log": str(whole), "messages": found.messages, "lost": list(map(str, found.lost))})
         return
     for reason in found.lost:
         typer.echo(f"not read: {reason}")

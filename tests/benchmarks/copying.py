@@ -18,13 +18,13 @@ import numpy as np
 
 from robot_agent.imitation.copying import CopyProfile, NoCopy, copy_moves
 from swarm.geometry import Move
+from swarm.learning.edit_distance import edit_distance
 from tests.demonstrations import (
     COMPARTMENT,
     OUTSIDE_CORNER,
     Conditions,
     Demonstration,
     demonstration,
-    edit_distance,
     expert_moves,
     random_moves,
 )
