@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
 from robot_agent.agent import Agent
@@ -47,13 +48,16 @@ def run(arguments: argparse.Namespace) -> None:
             for agent, name in zip(agents, names, strict=True):
                 agent.resume_from(Checkpoint(arguments.state, name, run))
         try:
-            for t_ns in link.ticks():
-                for agent in agents:
-                    agent.step(t_ns)
+            link.run(partial(_step, agents))
         finally:
             _stop(agents)
             if arguments.keys:
                 _write_keys(arguments.keys, link.keys_received)
+
+
+def _step(agents: list[Agent], t_ns: int) -> None:
+    for agent in agents:
+        agent.step(t_ns)
 
 
 def _write_keys(file: Path, keys_received: set[str]) -> None:

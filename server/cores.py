@@ -31,14 +31,17 @@ def keep(pid: int, core: int) -> None:
 
 
 def spread(processes: int, cores: Sequence[int]) -> list[int]:
-    """A core for each process: always the one with the least to do, where the server has the first."""
+    """A core for each process: always the one with the least to do, where the server has the first.
+
+    The processes beside the server come last: told of a tick in this order, the others start meanwhile.
+    """
     load = [SERVER_SHARE] + [0] * (len(cores) - 1)
     chosen = []
     for _ in range(processes):
         least = max(range(len(cores)), key=lambda core: (-load[core], core))
         load[least] += 1
         chosen.append(cores[least])
-    return chosen
+    return sorted(chosen, reverse=True)
 
 
 @contextmanager

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable
+from queue import Empty, SimpleQueue
 from typing import TypeVar
 
 from google.protobuf.message import Message
@@ -13,7 +14,7 @@ from server.batch import Batch
 from swarm.bus import Bus
 from swarm.clock import NS_PER_S
 from swarm.errors import RunFailedError
-from swarm.frames import Answer, FrameError, pack_item, pack_tick, unpack_answer
+from swarm.frames import BAD_FRAME, TICK, Answer, pack_item, unpack_answer
 from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
 from swarm.link import Sequencer
 from swarm.lockstep import EPOCH, key_matches
@@ -45,7 +46,8 @@ class LockstepHub:
         monotonic_s: Callable[[], float] = time.monotonic,
         ticks_per_exchange: int = 1,
     ) -> None:
-        self._inbox = bus.inbox(LOCKSTEP_DONE, Delivery.EVERY, wake_s=WAKE_S)
+        self._arrived: SimpleQueue[bytes] = SimpleQueue()
+        bus.on_arrival(LOCKSTEP_DONE, self._arrived.put)
         self._senders = {
             name: bus.sender(LOCKSTEP_TICK.format(process=name), Delivery.EVERY) for name in processes
         }
@@ -90,7 +92,7 @@ class LockstepHub:
         """Send the next tick, and with it to each process what it listens to."""
         first_ns = self.t_ns + self._tick_ns
         self.number += 1
-        start = pack_tick(self.number, first_ns, self._tick_ns, self._ticks)
+        start = TICK.pack(self.number, first_ns, self._tick_ns, self._ticks)
         for name, items in self._to_deliver.items():
             self._frames[name] = start + b"".join(items)
             self._senders[name].put(self._frames[name])
@@ -107,20 +109,21 @@ class LockstepHub:
             answer = self._next_answer()
             if answer is None:
                 named_s = self._look_for(waiting, began_s, named_s)
-            elif answer.number == self.number and answer.process in waiting:
-                waiting.discard(answer.process)
-                items += answer.items
-                for item in answer.items:
+                continue
+            number, process, published = answer
+            if number == self.number and process in waiting:
+                waiting.discard(process)
+                items += published
+                for item in published:
                     self._deliver(item)
         own, self._own = self._own, []
         return Batch(self.t_ns, items + own)
 
     def _next_answer(self) -> Answer | None:
         """None when nothing has come for a while, or no answer."""
-        payload = self._inbox.wait()
         try:
-            return unpack_answer(payload) if payload else None
-        except FrameError:
+            return unpack_answer(self._arrived.get(timeout=WAKE_S))
+        except (Empty, *BAD_FRAME):
             return None
 
     def _deliver(self, item: Item) -> None:
@@ -137,7 +140,7 @@ class LockstepHub:
 
     def finish(self) -> None:
         """End every process's ticks."""
-        end = pack_tick(self.number + 1, self.t_ns, self._tick_ns, steps=0)
+        end = TICK.pack(self.number + 1, self.t_ns, self._tick_ns, 0)
         for sender in self._senders.values():
             sender.put(end)
 

@@ -6,7 +6,7 @@ import socket
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -20,6 +20,7 @@ from server.supervisor import ProcessSpec, Supervisor
 from swarm.bus import Bus, BusSettings
 from swarm.clock import scaled_clock, unix_clock
 from swarm.experiment import Experiment
+from swarm.lockstep import LEASE_S
 from swarm.presence import Presence, claim
 
 LOCKSTEP_BATCHES_BETWEEN_FLUSHES = 1000
@@ -53,7 +54,7 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
         with (
             socket_endpoint() as endpoint,
             keeping_to(cores[0]) if pace.lockstep else nullcontext(),
-            Bus(BusSettings(endpoint, hub=True)) as bus,
+            Bus(_settings(endpoint, pace)) as bus,
         ):
             specs = run_table(experiment, file, endpoint, trial, pace, output)
             claim(bus, _presence())
@@ -62,6 +63,11 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
                 yield Stage(hub, SimulatedHand(hub.publish), flush_every)
 
     return stage
+
+
+def _settings(endpoint: str, pace: Pace) -> BusSettings:
+    settings = BusSettings(endpoint, hub=True)
+    return replace(settings, lease_s=LEASE_S) if pace.lockstep else settings
 
 
 def _hub(

@@ -1,10 +1,15 @@
-"""The only file that imports zenoh: a hub and clients with explicit endpoints, and no logic in callbacks."""
+"""The only file that imports zenoh: a hub and clients with explicit endpoints.
+
+Inboxes are polled from the main loop. Only the lockstep, where every wake-up counts, is called on arrival.
+"""
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -60,19 +65,18 @@ class Inbox:
             samples.append(_sample(sample))
         return samples
 
-    def wait(self) -> bytes:
-        """The next payload; blocks. An inbox made with `wake_s` gets an empty one that often."""
-        return self._subscriber.recv().payload.to_bytes()
-
 
 class Sender:
     """Puts payloads under one key."""
 
     def __init__(self, publisher: zenoh.Publisher) -> None:
-        self._publisher = publisher
+        self._put = publisher.put
 
     def put(self, payload: bytes, attachment: bytes | None = None) -> None:
-        self._publisher.put(payload, attachment=attachment)
+        if attachment is None:
+            self._put(payload)
+        else:
+            self._put(payload, attachment=attachment)
 
 
 class Bus:
@@ -84,9 +88,8 @@ class Bus:
 
         zenoh.init_log_from_env_or("error")
         self._zenoh = zenoh
-        self._stop_waking = threading.Event()
-        self._wakers: list[threading.Thread] = []
         self._tokens: list[zenoh.LivelinessToken] = []
+        self._listening: list[zenoh.Subscriber[None]] = []
         try:
             self._session = zenoh.open(_config(settings))
         except zenoh.ZError as error:
@@ -105,9 +108,6 @@ class Bus:
 
     def close(self) -> None:
         """Undeclare everything and leave; presence tokens vanish for the others."""
-        self._stop_waking.set()
-        for waker in self._wakers:
-            waker.join()
         if not self._session.is_closed():
             self._session.close()  # type: ignore[no-untyped-call]
 
@@ -123,21 +123,33 @@ class Bus:
             )
         )
 
-    def inbox(
-        self, key: str, delivery: Delivery, wake_s: float | None = None, *, keep_all: bool = False
-    ) -> Inbox:
+    def inbox(self, key: str, delivery: Delivery, *, keep_all: bool = False) -> Inbox:
         """Subscribe to a key expression.
 
-        `wake_s` lets `Inbox.wait` return that often with nothing. Of a `NEWEST` delivery one sample is
-        kept, unless `keep_all` says that the expression holds many keys.
+        Of a `NEWEST` delivery one sample is kept, unless `keep_all` says that the expression holds many keys.
         """
         handlers = self._zenoh.handlers
         newest_only = delivery is Delivery.NEWEST and not keep_all
         channel = handlers.RingChannel(1) if newest_only else handlers.FifoChannel(QUEUE_DEPTH)
-        inbox = Inbox(self._session.declare_subscriber(key, channel))
-        if wake_s is not None:
-            self._start_waker(key, wake_s)
-        return inbox
+        return Inbox(self._session.declare_subscriber(key, channel))
+
+    def on_arrival(self, key: str, receive: Callable[[bytes], None]) -> None:
+        """Call `receive` with every payload, on Zenoh's own thread, for as long as this session lives.
+
+        While it runs the session neither receives nor sends, and what it raises Zenoh only prints: it
+        must be quick or the session's only work, must not wait for Zenoh, and must keep its errors.
+        """
+        known: set[int] = set()
+
+        def call(sample: zenoh.Sample) -> None:
+            thread = threading.get_ident()
+            if thread not in known:
+                known.add(thread)
+                _keep_python_state()
+            receive(sample.payload.to_bytes())
+
+        handler = self._zenoh.handlers.Callback(call, indirect=False)
+        self._listening.append(self._session.declare_subscriber(key, handler))
 
     def declare_alive(self, key: str) -> None:
         """Show presence under a key for as long as this session lives."""
@@ -148,19 +160,14 @@ class Bus:
         replies = self._session.liveliness().get(key)
         return sorted({str(reply.ok.key_expr) for reply in replies if reply.ok is not None})
 
-    def _start_waker(self, key: str, wake_s: float) -> None:
-        """Zenoh's recv has no time-out: an empty sample to ourselves ends the wait instead."""
-        publisher = self._session.declare_publisher(
-            key, allowed_destination=self._zenoh.Locality.SESSION_LOCAL
-        )
 
-        def wake() -> None:
-            while not self._stop_waking.wait(wake_s):
-                publisher.put(b"")
+def _keep_python_state() -> None:
+    """Let this foreign thread keep what Python knows of it.
 
-        thread = threading.Thread(target=wake, name=f"wake {key}", daemon=True)
-        self._wakers.append(thread)
-        thread.start()
+    Python would make that anew for every callback, which takes longer than the callback. One call
+    without its release keeps it (C API, "Non-Python created threads").
+    """
+    ctypes.pythonapi.PyGILState_Ensure()
 
 
 def _sample(sample: zenoh.Sample) -> Sample:

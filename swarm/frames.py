@@ -11,23 +11,14 @@ from typing import NamedTuple
 
 from swarm.messages.header import Header, Item
 
-_TICK = struct.Struct("<QqIH")
+TICK = struct.Struct("<QqIH")
+"""The start of a tick: its number, the time of its first step, the nanoseconds between steps, how many there
+are (none ends the run). What it brings comes behind."""
+BAD_FRAME = (struct.error, UnicodeDecodeError)
+"""What reading a frame raises if it is none."""
+
 _ANSWER = struct.Struct("<QH")
 _ITEM = struct.Struct("<HIQQq")
-
-
-class FrameError(ValueError):
-    """Bytes that are no frame."""
-
-
-class Tick(NamedTuple):
-    """The hub's leave to make `steps` steps, `step_ns` apart, the first at `t_ns`; with none, the end."""
-
-    number: int
-    t_ns: int
-    step_ns: int
-    steps: int
-    items: list[Item]
 
 
 class Answer(NamedTuple):
@@ -36,11 +27,6 @@ class Answer(NamedTuple):
     number: int
     process: str
     items: list[Item]
-
-
-def pack_tick(number: int, t_ns: int, step_ns: int, steps: int) -> bytes:
-    """The start of a tick's frame; its items come behind."""
-    return _TICK.pack(number, t_ns, step_ns, steps)
 
 
 def pack_answer(number: int, process: str) -> bytes:
@@ -55,27 +41,16 @@ def pack_item(key: str, header: Header, payload: bytes) -> bytes:
     return _ITEM.pack(len(name), len(payload), *header) + name + payload
 
 
-def unpack_tick(frame: bytes) -> Tick:
-    """FrameError if the bytes are no tick."""
-    try:
-        number, t_ns, step_ns, steps = _TICK.unpack_from(frame)
-        return Tick(number, t_ns, step_ns, steps, _unpack_items(frame, _TICK.size))
-    except (struct.error, UnicodeDecodeError) as error:
-        raise FrameError(f"no tick: {error}") from error
-
-
 def unpack_answer(frame: bytes) -> Answer:
-    """FrameError if the bytes are no answer."""
-    try:
-        number, size = _ANSWER.unpack_from(frame)
-        items_at = _ANSWER.size + size
-        return Answer(number, frame[_ANSWER.size : items_at].decode(), _unpack_items(frame, items_at))
-    except (struct.error, UnicodeDecodeError) as error:
-        raise FrameError(f"no answer: {error}") from error
+    """Raises one of `BAD_FRAME` if the bytes are no answer."""
+    number, size = _ANSWER.unpack_from(frame)
+    items_at = _ANSWER.size + size
+    items = unpack_items(frame, items_at) if len(frame) != items_at else []
+    return Answer(number, frame[_ANSWER.size : items_at].decode(), items)
 
 
-def _unpack_items(frame: bytes, at: int) -> list[Item]:
-    """Everything from a place to the frame's end."""
+def unpack_items(frame: bytes, at: int) -> list[Item]:
+    """The messages from a place to the frame's end."""
     items = []
     while at < len(frame):
         name_size, payload_size, epoch, sequence, t_ns = _ITEM.unpack_from(frame, at)

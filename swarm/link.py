@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from typing import Any, Protocol, TypeVar
 
 from google.protobuf.message import Message
@@ -17,6 +17,9 @@ from swarm.messages.header import Header
 
 M = TypeVar("M", bound=Message)
 
+Step = Callable[[int], None]
+"""What a process does at a tick, given the run's time in nanoseconds."""
+
 
 class Link(Protocol):
     """The same for real time and for lockstep, so that no process knows which it is in."""
@@ -30,8 +33,8 @@ class Link(Protocol):
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         """Send a message under the robot's key."""
 
-    def ticks(self) -> Iterator[int]:
-        """The run's time in nanoseconds at every tick, until the run ends."""
+    def run(self, step: Step) -> None:
+        """Step at every tick, until the run ends."""
 
 
 class Sequencer:
@@ -75,12 +78,15 @@ class LiveLink:
             self._senders[key] = self._bus.sender(key, topic.delivery)
         self._senders[key].put(message.SerializeToString(), header.pack())
 
-    def ticks(self) -> Iterator[int]:
+    def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):
-            for inbox, feed in self._inboxes:
-                for sample in inbox.poll():
-                    self.keys_received.add(sample.key)
-                    feed.put(sample.key, Header.unpack(sample.attachment), sample.payload)
-            yield t_ns
+            self._take_in()
+            step(t_ns)
             if any(state.message.phase == pb.RunState.ENDED for state in self._run_states.take()):
                 return
+
+    def _take_in(self) -> None:
+        for inbox, feed in self._inboxes:
+            for sample in inbox.poll():
+                self.keys_received.add(sample.key)
+                feed.put(sample.key, Header.unpack(sample.attachment), sample.payload)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import threading
+from functools import partial
+from queue import Empty, SimpleQueue
 from typing import Any, TypeVar
 
 from google.protobuf.message import Message
@@ -10,15 +12,19 @@ from google.protobuf.message import Message
 from swarm.bus import Bus
 from swarm.errors import RunFailedError
 from swarm.feed import Feed
-from swarm.frames import FrameError, Tick, pack_answer, pack_item, unpack_tick
+from swarm.frames import BAD_FRAME, TICK, pack_answer, pack_item, unpack_items
 from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
-from swarm.link import Sequencer
+from swarm.link import Sequencer, Step
 from swarm.messages.header import Header, Item
 
 M = TypeVar("M", bound=Message)
 
 WAKE_S = 0.25
 WAKES_WITHOUT_HUB = 8
+LEASE_S = 60.0
+"""A process gives no sign of life while it steps; the hub itself finds out who is silent for too long."""
+SENT_AT_ONCE_BYTES = 32_768
+"""Far below the two batches of 64 KiB that Zenoh holds: with them full its thread would wait for itself."""
 EPOCH = 1
 """A process of a lockstep run is started once, so its epoch is the same in every repetition."""
 
@@ -27,12 +33,15 @@ class LockstepLink:
     """Steps when the hub says so, and sends everything it published in one message an exchange.
 
     Ticks are numbered and idempotent: a repeated tick gets the same answer again.
+
+    A tick is stepped on the thread on which it arrives, which is Zenoh's. Between two ticks a process has
+    nothing else to do, and to hand each tick to the main thread and each answer back takes longer than a
+    robot's step. The main thread waits: for the end, for what a step raised, for answers that are large.
     """
 
     def __init__(self, bus: Bus, process: str) -> None:
         self._bus = bus
         self._process = process
-        self._ticks = bus.inbox(LOCKSTEP_TICK.format(process=process), Delivery.EVERY, wake_s=WAKE_S)
         self._done = bus.sender(LOCKSTEP_DONE, Delivery.EVERY)
         self._feeds: list[tuple[str, Feed[Any]]] = []
         self._routes: dict[str, tuple[Feed[Any], ...]] = {}
@@ -41,6 +50,9 @@ class LockstepLink:
         self._answer = b""
         self._number = 0
         self._t_ns = 0
+        self._turn = threading.Lock()
+        self._ended = False
+        self._for_main: SimpleQueue[bytes | BaseException | None] = SimpleQueue()
         self.keys_received: set[str] = set()
         """Every key of which this process received a message."""
 
@@ -54,39 +66,70 @@ class LockstepLink:
         header = Header(EPOCH, self._sequencer.following(key), self._t_ns)
         self._published.append(pack_item(key, header, message.SerializeToString()))
 
-    def ticks(self) -> Iterator[int]:
-        while (tick := self._next_tick()).steps:
-            for t_ns, items in _steps(tick):
-                self._t_ns = t_ns
-                for item in items:
-                    self._deliver(*item)
-                yield t_ns
-            self._number = tick.number
-            self._answer = pack_answer(tick.number, self._process) + b"".join(self._published)
-            self._published.clear()
-            self._send_answer()
+    def run(self, step: Step) -> None:
+        self._bus.on_arrival(LOCKSTEP_TICK.format(process=self._process), partial(self._on_tick, step))
+        try:
+            self._wait_for_end()
+        finally:
+            with self._turn:
+                self._ended = True
 
-    def _next_tick(self) -> Tick:
+    def _on_tick(self, step: Step, payload: bytes) -> None:
+        """On Zenoh's thread, which would swallow an error."""
+        with self._turn:
+            try:
+                if not self._ended:
+                    self._follow(step, payload)
+            except BaseException as error:
+                self._end(error)
+
+    def _follow(self, step: Step, payload: bytes) -> None:
+        """Make a tick's steps and answer it. If it brings nothing this calls nothing that can be spared."""
+        try:
+            number, t_ns, step_ns, steps = TICK.unpack_from(payload)
+            items = unpack_items(payload, TICK.size) if len(payload) > TICK.size else []
+        except BAD_FRAME as error:
+            raise RunFailedError(f"{self._process}: the server sent no tick: {error}") from error
+        if number > self._number:
+            if not steps:
+                self._end(None)
+                return
+            end_ns = t_ns + steps * step_ns
+            for self._t_ns in range(t_ns, end_ns, step_ns):
+                if items:
+                    items = self._deliver_due(items, end_ns - t_ns, end_ns - step_ns)
+                step(self._t_ns)
+            self._answer = pack_answer(number, self._process) + b"".join(self._published)
+            self._published.clear()
+            self._number = number
+        if len(self._answer) <= SENT_AT_ONCE_BYTES:
+            self._done.put(self._answer)
+        else:
+            self._for_main.put(self._answer)
+
+    def _end(self, error: BaseException | None) -> None:
+        self._ended = True
+        self._for_main.put(error)
+
+    def _wait_for_end(self) -> None:
+        """The main thread's part."""
         silent_wakes = 0
-        while True:
-            payload = self._ticks.wait()
-            if payload:
-                tick = self._read(payload)
-                if tick.number > self._number:
-                    return tick
-                self._send_answer()
-                continue
-            silent_wakes = 0 if self._hub_is_alive() else silent_wakes + 1
-            if silent_wakes >= WAKES_WITHOUT_HUB:
-                raise RunFailedError(f"{self._process}: the server is gone, so the simulation cannot go on")
+        while silent_wakes < WAKES_WITHOUT_HUB:
             if self._number == 0:
                 self._greet()
-
-    def _read(self, payload: bytes) -> Tick:
-        try:
-            return unpack_tick(payload)
-        except FrameError as error:
-            raise RunFailedError(f"{self._process}: the server sent {error}") from error
+            before = self._number
+            try:
+                given = self._for_main.get(timeout=WAKE_S)
+            except Empty:
+                idle = self._number == before and not self._turn.locked()
+                silent_wakes = silent_wakes + 1 if idle and not self._hub_is_alive() else 0
+                continue
+            if given is None:
+                return
+            if isinstance(given, BaseException):
+                raise given
+            self._done.put(given)
+        raise RunFailedError(f"{self._process}: the server is gone, so the simulation cannot go on")
 
     def _hub_is_alive(self) -> bool:
         return bool(self._bus.alive("alive/server/**"))
@@ -97,6 +140,14 @@ class LockstepLink:
         keys = b"".join(pack_item(key, Header(EPOCH, 0, 0), b"") for key in listens_to)
         self._done.put(pack_answer(0, self._process) + keys)
 
+    def _deliver_due(self, waiting: list[Item], exchange_ns: int, last_ns: int) -> list[Item]:
+        """Deliver what was published an exchange ago, at the last step everything; return the rest."""
+        published_ns = self._t_ns - exchange_ns
+        due = [item for item in waiting if item.header.t_ns <= published_ns or self._t_ns == last_ns]
+        for item in sorted(due):
+            self._deliver(*item)
+        return [item for item in waiting if item.header.t_ns > published_ns]
+
     def _deliver(self, key: str, header: Header, payload: bytes) -> None:
         feeds = self._routes.get(key)
         if feeds is None:
@@ -105,21 +156,6 @@ class LockstepLink:
             self.keys_received.add(key)
         for feed in feeds:
             feed.put(key, header, payload)
-
-    def _send_answer(self) -> None:
-        if self._answer:
-            self._done.put(self._answer)
-
-
-def _steps(tick: Tick) -> Iterator[tuple[int, list[Item]]]:
-    """The times of an exchange, each with what arrives then: one exchange after it was published."""
-    waiting = sorted(tick.items)
-    exchange_ns = tick.steps * tick.step_ns
-    last_ns = tick.t_ns + exchange_ns - tick.step_ns
-    for t_ns in range(tick.t_ns, last_ns, tick.step_ns):
-        yield t_ns, [item for item in waiting if item.header.t_ns + exchange_ns <= t_ns]
-        waiting = [item for item in waiting if item.header.t_ns + exchange_ns > t_ns]
-    yield last_ns, waiting
 
 
 def key_matches(expression: str, key: str) -> bool:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any, TypeVar
 
 from google.protobuf.message import Message
 
 from swarm.feed import Feed
 from swarm.keys import Topic
-from swarm.link import Sequencer
+from swarm.link import Sequencer, Step
 from swarm.lockstep import key_matches
 from swarm.messages.header import Header
 
@@ -39,6 +38,6 @@ class LocalLink:
             if key_matches(expression, key):
                 feed.put(key, header, message.SerializeToString())
 
-    def ticks(self) -> Iterator[int]:
+    def run(self, step: Step) -> None:
         while True:
-            yield self.t_ns
+            step(self.t_ns)

@@ -23,5 +23,5 @@ def test_what_is_started_inside_keeps_to_the_core_and_waits_for_its_turn() -> No
 
 def test_the_server_counts_as_two_processes_on_the_first_core() -> None:
     assert spread(4, [0, 1]) == [1, 1, 1, 0]
-    assert spread(5, [0, 1, 2]) == [2, 1, 2, 1, 2]
+    assert spread(5, [0, 1, 2]) == [2, 2, 2, 1, 1]
     assert spread(3, [5]) == [5, 5, 5]

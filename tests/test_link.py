@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import islice
+from itertools import count
 
 from swarm import keys
 from swarm.bus import Bus, BusSettings
@@ -29,13 +29,18 @@ def test_a_robot_hears_its_own_messages_numbered_without_gaps() -> None:
         receiver = LiveLink(there, unix_clock(), PERIOD_S, epoch=78)
         own, everyone = receiver.subscribe(keys.ORDER, "a"), receiver.subscribe(keys.ORDER)
         orders, all_orders = [], []
-        for number, _ in enumerate(receiver.ticks()):
+        numbering = count()
+
+        def step(t_ns: int) -> None:  # noqa: ARG001
+            number = next(numbering)
             for robot in ("a", "b"):
                 sender.publish(keys.ORDER, pb.Order(kind=pb.Order.RUN, reason=str(number)), robot)
-            orders += own.take()
-            all_orders += everyone.take()
+            orders.extend(own.take())
+            all_orders.extend(everyone.take())
             if len(orders) >= 20:
-                break
+                sender.publish(keys.RUN_STATE, pb.RunState(phase=pb.RunState.ENDED))
+
+        receiver.run(step)
     assert {order.robot for order in orders} == {"a"}
     assert {order.robot for order in all_orders} == {"a", "b"}
     numbers = [order.header.sequence for order in orders]
@@ -45,7 +50,15 @@ def test_a_robot_hears_its_own_messages_numbered_without_gaps() -> None:
 
 
 def test_ticks_are_multiples_of_the_period() -> None:
+    ticks: list[int] = []
     with Bus(BusSettings(free_endpoint(), hub=True)) as bus:
-        ticks = list(islice(LiveLink(bus, unix_clock(), PERIOD_S, epoch=1).ticks(), 5))
+        link = LiveLink(bus, unix_clock(), PERIOD_S, epoch=1)
+
+        def step(t_ns: int) -> None:
+            ticks.append(t_ns)
+            if len(ticks) >= 5:
+                link.publish(keys.RUN_STATE, pb.RunState(phase=pb.RunState.ENDED))
+
+        link.run(step)
     assert all(t_ns % 10_000_000 == 0 for t_ns in ticks)
     assert sorted(set(ticks)) == ticks

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from functools import partial
+from itertools import count
+from queue import SimpleQueue
 
 import pytest
 
@@ -12,18 +18,10 @@ from server.lockstep_hub import LockstepHub
 from swarm import keys
 from swarm.bus import Bus, BusSettings
 from swarm.errors import RunFailedError
-from swarm.frames import (
-    Answer,
-    FrameError,
-    Tick,
-    pack_answer,
-    pack_item,
-    pack_tick,
-    unpack_answer,
-    unpack_tick,
-)
+from swarm.frames import BAD_FRAME, TICK, Answer, pack_answer, pack_item, unpack_answer, unpack_items
 from swarm.keys import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery
-from swarm.lockstep import LockstepLink, key_matches
+from swarm.link import Step
+from swarm.lockstep import SENT_AT_ONCE_BYTES, LockstepLink, key_matches
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header, Item
 from swarm.presence import Presence, claim
@@ -45,7 +43,7 @@ ITEMS = [Item("robot/a/move", Header(1, 2, 3), b"payload"), Item("run/state", He
 
 def test_a_frame_says_what_was_packed() -> None:
     items = b"".join(pack_item(*item) for item in ITEMS)
-    assert unpack_tick(pack_tick(7, 300, 100, 2) + items) == Tick(7, 300, 100, 2, ITEMS)
+    assert unpack_items(TICK.pack(7, 300, 100, 2) + items, TICK.size) == ITEMS
     assert unpack_answer(pack_answer(7, "robots-1") + items) == Answer(7, "robots-1", ITEMS)
     assert unpack_answer(pack_answer(0, "tracker")) == Answer(0, "tracker", [])
 
@@ -54,12 +52,12 @@ def test_no_cut_frame_is_read_as_another() -> None:
     frame = pack_answer(7, "robots-1") + pack_item(*ITEMS[0])
     whole = len(pack_answer(7, "robots-1"))
     for size in (size for size in range(len(frame)) if size != whole):
-        with pytest.raises(FrameError, match="no answer"):
+        with pytest.raises(BAD_FRAME):
             unpack_answer(frame[:size])
-    with pytest.raises(FrameError, match="no answer"):
+    with pytest.raises(BAD_FRAME):
         unpack_answer(b"\xff" * 100)
-    with pytest.raises(FrameError, match="no tick"):
-        unpack_tick(b"\xff" * 100)
+    with pytest.raises(BAD_FRAME):
+        unpack_items(b"\xff" * 100, TICK.size)
 
 
 class Swarm:
@@ -72,25 +70,36 @@ class Swarm:
         claim(self.bus, Presence("server", "server", "here", 1))
         self.warnings: list[str] = []
         self.heard: dict[str, list[tuple[int, str, int]]] = {}
+        self.raised: list[Exception] = []
 
     def hub(self, *processes: str) -> LockstepHub:
         return LockstepHub(self.bus, list(processes), TICK_S, lambda: None, self.warnings.append)
 
-    def start(self, robot: str) -> None:
-        """A robot that reports every tick and writes down whatever it hears of moves and orders."""
-        thread = threading.Thread(target=self._run, args=(robot,))
+    def start(self, robot: str, step_of: Callable[[LockstepLink], Step] | None = None) -> None:
+        """A robot that reports every tick and writes down what it hears, or steps as told."""
+        thread = threading.Thread(target=self._run, args=(robot, step_of or partial(self._reporter, robot)))
         thread.start()
         self.stack.callback(thread.join)
 
-    def _run(self, robot: str) -> None:
-        heard = self.heard.setdefault(robot, [])
+    def _run(self, robot: str, step_of: Callable[[LockstepLink], Step]) -> None:
         with Bus(BusSettings(self.endpoint)) as bus:
             link = LockstepLink(bus, robot)
-            moves, orders = link.subscribe(keys.MOVE), link.subscribe(keys.ORDER, robot)
-            for number, t_ns in enumerate(link.ticks(), 1):
-                heard += [(t_ns, f"move of {move.robot}", move.message.number) for move in moves.take()]
-                heard += [(t_ns, "order", order.message.kind) for order in orders.take()]
-                link.publish(keys.MOVE, pb.Move(number=number), robot)
+            try:
+                link.run(step_of(link))
+            except Exception as error:
+                self.raised.append(error)
+
+    def _reporter(self, robot: str, link: LockstepLink) -> Step:
+        heard = self.heard.setdefault(robot, [])
+        moves, orders = link.subscribe(keys.MOVE), link.subscribe(keys.ORDER, robot)
+        numbers = count(1)
+
+        def step(t_ns: int) -> None:
+            heard.extend((t_ns, f"move of {move.robot}", move.message.number) for move in moves.take())
+            heard.extend((t_ns, "order", order.message.kind) for order in orders.take())
+            link.publish(keys.MOVE, pb.Move(number=next(numbers)), robot)
+
+        return step
 
 
 @pytest.fixture
@@ -131,17 +140,92 @@ def test_a_repeated_tick_gets_the_same_answer_and_is_not_stepped_again(swarm: Sw
     hub.start()
     hub.advance()
     hub.gather()
-    answers = swarm.bus.inbox(LOCKSTEP_DONE, Delivery.EVERY, wake_s=0.05)
+    answers: SimpleQueue[bytes] = SimpleQueue()
+    swarm.bus.on_arrival(LOCKSTEP_DONE, answers.put)
     again = swarm.bus.sender(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
-    again.put(pack_tick(1, 100_000_000, 100_000_000, 1))
-    while not (payload := answers.wait()):
-        pass
-    answer = unpack_answer(payload)
+    again.put(TICK.pack(1, 100_000_000, 100_000_000, 1))
+    answer = unpack_answer(answers.get())
     assert answer.number == 1
     assert [(item.key, item.header.sequence) for item in answer.items] == [("robot/a/move", 1)]
     hub.advance()
     assert [item.header.sequence for item in hub.gather().items] == [2]
     hub.finish()
+
+
+def test_an_answer_of_any_size_arrives(swarm: Swarm) -> None:
+    """More than Zenoh's thread may send itself, and more than Zenoh's queue holds."""
+    event = pb.Event(text="x" * 2 * SENT_AT_ONCE_BYTES)
+
+    def talker(link: LockstepLink) -> Step:
+        def step(t_ns: int) -> None:  # noqa: ARG001
+            for _ in range(64):
+                link.publish(keys.EVENT, event, "a")
+
+        return step
+
+    swarm.start("a", talker)
+    hub = swarm.hub("a")
+    hub.start()
+    for _ in range(3):
+        hub.advance()
+        assert [item.payload for item in hub.gather().items] == [event.SerializeToString()] * 64
+    hub.finish()
+
+
+def test_what_a_step_raises_ends_the_process(swarm: Swarm) -> None:
+    def failing(link: LockstepLink) -> Step:  # noqa: ARG001
+        def step(t_ns: int) -> None:
+            raise ZeroDivisionError(t_ns)
+
+        return step
+
+    swarm.start("a", failing)
+    hub = swarm.hub("a")
+    hub.start()
+    hub.advance()
+    swarm.stack.pop_all().close()
+    assert [repr(error) for error in swarm.raised] == ["ZeroDivisionError(100000000)"]
+
+
+LEAVER = """
+import os, signal, sys
+from swarm.bus import Bus, BusSettings
+from swarm.lockstep import LockstepLink
+from swarm.process import leave_on_signals
+
+def step(t_ns):
+    os.kill(os.getpid(), signal.SIGTERM)
+    for _ in range(10_000_000):
+        "The main thread has its turns meanwhile."
+    print("stepped")
+
+leave_on_signals()
+with Bus(BusSettings(sys.argv[1])) as bus:
+    try:
+        LockstepLink(bus, "a").run(step)
+    finally:
+        print("left")
+"""
+
+
+def test_a_process_that_is_told_to_leave_ends_its_step_first(swarm: Swarm) -> None:
+    leaver = subprocess.Popen(
+        [sys.executable, "-c", LEAVER, swarm.endpoint], stdout=subprocess.PIPE, text=True
+    )
+    hub = swarm.hub("a")
+    hub.start()
+    hub.advance()
+    assert leaver.communicate()[0] == "stepped\nleft\n"
+    assert leaver.returncode == 128 + signal.SIGTERM
+
+
+def test_bytes_that_are_no_tick_end_the_process_with_a_clear_line(swarm: Swarm) -> None:
+    swarm.start("a")
+    hub = swarm.hub("a")
+    hub.start()
+    swarm.bus.sender(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY).put(b"no tick")
+    swarm.stack.pop_all().close()
+    assert [str(error)[:30] for error in swarm.raised] == ["a: the server sent no tick: un"]
 
 
 def test_a_process_that_never_comes_is_named(swarm: Swarm) -> None:

@@ -35,8 +35,7 @@ def run(arguments: argparse.Namespace) -> None:
         arena = experiment.arena
         gate = Gate(GateSettings(arena.width_m, arena.height_m))
         bridge = Bridge(backend, gate, link, [robot.id for robot in experiment.robot])
-        for t_ns in link.ticks():
-            bridge.step(t_ns)
+        link.run(bridge.step)
 
 
 MakeBackend = Callable[[Experiment, Link, int], Backend]

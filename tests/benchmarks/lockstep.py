@@ -56,8 +56,11 @@ SCHEDULES = {
 def zenoh_worker(name: str, endpoint: str) -> None:
     """An agent process without agents."""
     with Bus(BusSettings(endpoint)) as bus:
-        for _ in LockstepLink(bus, name).ticks():
-            pass
+        LockstepLink(bus, name).run(no_step)
+
+
+def no_step(t_ns: int) -> None:
+    """What an empty agent does at a tick."""
 
 
 def bare_worker(path: str) -> None:
