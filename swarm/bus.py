@@ -25,6 +25,8 @@ ONE_THREAD = (
     "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
 )
 QUEUE_DEPTH = 65_536
+WAIT_FOR_ROOM_S = 5.0
+"""What must not be dropped waits so long for room, or as long as the lease; then Zenoh reconnects."""
 
 
 @dataclass(frozen=True)
@@ -134,10 +136,11 @@ class Bus:
         return Inbox(self._session.declare_subscriber(key, channel))
 
     def on_arrival(self, key: str, receive: Callable[[bytes], None]) -> None:
-        """Call `receive` with every payload, on Zenoh's own thread, for as long as this session lives.
+        """Call `receive` with every payload, for as long as this session lives.
 
-        While it runs the session neither receives nor sends, and what it raises Zenoh only prints: it
-        must be quick or the session's only work, must not wait for Zenoh, and must keep its errors.
+        It is called on Zenoh's own thread, or on that of a sender in the same session. Meanwhile the
+        session neither receives nor sends, and what it raises Zenoh only prints: it must be quick or the
+        session's only work, must not wait for Zenoh, and must keep its errors.
         """
         known: set[int] = set()
 
@@ -182,6 +185,7 @@ def _config(settings: BusSettings) -> zenoh.Config:
     import zenoh
 
     config = _config_of(settings.config) if settings.config else zenoh.Config()
+    patience_s = max(settings.lease_s, WAIT_FOR_ROOM_S)
     values: dict[str, object] = {
         "mode": "router" if settings.hub else "client",
         "listen/endpoints": [settings.endpoint] if settings.hub else [],
@@ -194,6 +198,7 @@ def _config(settings: BusSettings) -> zenoh.Config:
         "transport/shared_memory/enabled": False,
         "timestamping/enabled": True,
         "transport/link/tx/lease": round(settings.lease_s * 1000),
+        "transport/link/tx/queue/congestion_control/block/wait_before_close": round(patience_s * 1e6),
     }
     for key, value in values.items():
         config.insert_json5(key, json.dumps(value))

@@ -34,7 +34,10 @@ class Link(Protocol):
         """Send a message under the robot's key."""
 
     def run(self, step: Step) -> None:
-        """Step at every tick, until the run ends."""
+        """Step at every tick, until the run ends.
+
+        Steps come one at a time, perhaps on another thread; once this returns or raises there are no more.
+        """
 
 
 class Sequencer:

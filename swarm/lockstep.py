@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from functools import partial
-from queue import Empty, SimpleQueue
 from typing import Any, TypeVar
 
 from google.protobuf.message import Message
@@ -36,7 +35,9 @@ class LockstepLink:
 
     A tick is stepped on the thread on which it arrives, which is Zenoh's. Between two ticks a process has
     nothing else to do, and to hand each tick to the main thread and each answer back takes longer than a
-    robot's step. The main thread waits: for the end, for what a step raised, for answers that are large.
+    robot's step. Zenoh's thread must never wait for room in Zenoh's own queue, which it empties itself: it
+    sends an answer if that is new and small and nothing else can be waiting. The rest, answers that are
+    large or asked for again and greetings, is left to the main thread, as is what a step raises.
     """
 
     def __init__(self, bus: Bus, process: str) -> None:
@@ -52,7 +53,10 @@ class LockstepLink:
         self._t_ns = 0
         self._turn = threading.Lock()
         self._ended = False
-        self._for_main: SimpleQueue[bytes | BaseException | None] = SimpleQueue()
+        self._error: BaseException | None = None
+        self._owed = False
+        self._main_sends = False
+        self._news = threading.Event()
         self.keys_received: set[str] = set()
         """Every key of which this process received a message."""
 
@@ -71,8 +75,11 @@ class LockstepLink:
         try:
             self._wait_for_end()
         finally:
-            with self._turn:
-                self._ended = True
+            self._ended = True
+            with self._turn:  # A step that is under way comes to its end.
+                pass
+        if self._error:
+            raise self._error
 
     def _on_tick(self, step: Step, payload: bytes) -> None:
         """On Zenoh's thread, which would swallow an error."""
@@ -81,7 +88,8 @@ class LockstepLink:
                 if not self._ended:
                     self._follow(step, payload)
             except BaseException as error:
-                self._end(error)
+                self._error = error
+                self._end()
 
     def _follow(self, step: Step, payload: bytes) -> None:
         """Make a tick's steps and answer it. If it brings nothing this calls nothing that can be spared."""
@@ -90,46 +98,59 @@ class LockstepLink:
             items = unpack_items(payload, TICK.size) if len(payload) > TICK.size else []
         except BAD_FRAME as error:
             raise RunFailedError(f"{self._process}: the server sent no tick: {error}") from error
-        if number > self._number:
-            if not steps:
-                self._end(None)
-                return
-            end_ns = t_ns + steps * step_ns
-            for self._t_ns in range(t_ns, end_ns, step_ns):
-                if items:
-                    items = self._deliver_due(items, end_ns - t_ns, end_ns - step_ns)
-                step(self._t_ns)
-            self._answer = pack_answer(number, self._process) + b"".join(self._published)
-            self._published.clear()
-            self._number = number
-        if len(self._answer) <= SENT_AT_ONCE_BYTES:
-            self._done.put(self._answer)
+        if not steps:
+            self._end()
+        elif number <= self._number:
+            self._owed = True
         else:
-            self._for_main.put(self._answer)
+            end_ns = t_ns + steps * step_ns
+            for step_t_ns in range(t_ns, end_ns, step_ns):
+                self._t_ns = step_t_ns
+                if items:
+                    items = self._deliver_due(items, end_ns - t_ns)
+                step(step_t_ns)
+            answer = pack_answer(number, self._process) + b"".join(self._published)
+            self._published.clear()
+            self._number, self._answer = number, answer
+            if len(answer) <= SENT_AT_ONCE_BYTES and not self._main_sends:
+                self._owed = False
+                self._done.put(answer)
+            else:
+                self._owed = True
+                self._news.set()
 
-    def _end(self, error: BaseException | None) -> None:
+    def _end(self) -> None:
         self._ended = True
-        self._for_main.put(error)
+        self._news.set()
 
     def _wait_for_end(self) -> None:
         """The main thread's part."""
         silent_wakes = 0
-        while silent_wakes < WAKES_WITHOUT_HUB:
-            if self._number == 0:
-                self._greet()
+        while not self._ended:
             before = self._number
-            try:
-                given = self._for_main.get(timeout=WAKE_S)
-            except Empty:
-                idle = self._number == before and not self._turn.locked()
-                silent_wakes = silent_wakes + 1 if idle and not self._hub_is_alive() else 0
-                continue
-            if given is None:
-                return
-            if isinstance(given, BaseException):
-                raise given
-            self._done.put(given)
-        raise RunFailedError(f"{self._process}: the server is gone, so the simulation cannot go on")
+            if self._news.wait(WAKE_S):
+                self._news.clear()
+                self._send_owed()
+            elif not self._turn.locked():
+                self._main_sends = False
+                silent = self._number == before and not self._hub_is_alive()
+                silent_wakes = silent_wakes + 1 if silent else 0
+                if silent_wakes == WAKES_WITHOUT_HUB:
+                    raise RunFailedError(
+                        f"{self._process}: the server is gone, so the simulation cannot go on"
+                    )
+                if self._number:
+                    self._send_owed()
+                else:
+                    self._greet()
+
+    def _send_owed(self) -> None:
+        """This may wait for Zenoh's thread, which therefore sends nothing itself until all has gone."""
+        with self._turn:
+            owed, self._owed = self._owed, False
+            self._main_sends |= owed
+        if owed:
+            self._done.put(self._answer)
 
     def _hub_is_alive(self) -> bool:
         return bool(self._bus.alive("alive/server/**"))
@@ -140,11 +161,10 @@ class LockstepLink:
         keys = b"".join(pack_item(key, Header(EPOCH, 0, 0), b"") for key in listens_to)
         self._done.put(pack_answer(0, self._process) + keys)
 
-    def _deliver_due(self, waiting: list[Item], exchange_ns: int, last_ns: int) -> list[Item]:
-        """Deliver what was published an exchange ago, at the last step everything; return the rest."""
+    def _deliver_due(self, waiting: list[Item], exchange_ns: int) -> list[Item]:
+        """Deliver what was published an exchange ago or before; return the rest."""
         published_ns = self._t_ns - exchange_ns
-        due = [item for item in waiting if item.header.t_ns <= published_ns or self._t_ns == last_ns]
-        for item in sorted(due):
+        for item in sorted(item for item in waiting if item.header.t_ns <= published_ns):
             self._deliver(*item)
         return [item for item in waiting if item.header.t_ns > published_ns]
 

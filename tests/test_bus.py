@@ -105,7 +105,7 @@ def test_clients_reach_each_other_through_the_hub(hub: Bus, client: Bus, endpoin
         assert drained(sender, inbox, wake, b"last") == [b"last"]
 
 
-def test_what_arrives_is_called_with_in_order_from_every_thread_that_puts(hub: Bus, client: Bus) -> None:
+def test_arrivals_come_in_order_from_another_session_and_from_our_own(hub: Bus, client: Bus) -> None:
     """Zenoh's thread calls for the client, the test's own thread for the hub's own sender."""
     arrived: SimpleQueue[bytes] = SimpleQueue()
     hub.on_arrival("robot/*/move", arrived.put)

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from swarm.analysis.log_reader import LogReader
+from swarm.lockstep import WAKE_S, WAKES_WITHOUT_HUB
 from tests.swarm_runs import experiment_text, run_server, write_experiment
 from tests.watched_server import WatchedServer
 
@@ -75,9 +76,19 @@ def test_ctrl_c_ends_cleanly(server: WatchedServer) -> None:
     assert trial_state(server) == "interrupted"
 
 
-def test_a_stopped_process_is_named_and_the_log_shows_nothing_of_it(tmp_path: Path) -> None:
-    experiment = write_experiment(tmp_path, experiment_text(moves=60))
-    run_server(experiment, tmp_path / "undisturbed")
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, bytes]:
+    """An experiment of a few seconds, and its log."""
+    directory = tmp_path_factory.mktemp("undisturbed")
+    experiment = write_experiment(directory, experiment_text(moves=200))
+    run_server(experiment, directory / "run")
+    return experiment, (directory / "run" / "trial-000.mcap").read_bytes()
+
+
+def test_a_stopped_process_is_named_and_the_log_shows_nothing_of_it(
+    undisturbed: tuple[Path, bytes], tmp_path: Path
+) -> None:
+    experiment, log = undisturbed
     with WatchedServer(experiment, tmp_path / "stopped") as server:
         server.wait_until_under_way()
         victim = server.children["robots-2"]
@@ -85,5 +96,18 @@ def test_a_stopped_process_is_named_and_the_log_shows_nothing_of_it(tmp_path: Pa
         server.wait_for("still waits for robots-2")
         os.kill(victim.pid, signal.SIGCONT)
         assert server.finish() == 0
-    logs = [tmp_path / run / "trial-000.mcap" for run in ("undisturbed", "stopped")]
-    assert logs[0].read_bytes() == logs[1].read_bytes()
+    assert (tmp_path / "stopped" / "trial-000.mcap").read_bytes() == log
+
+
+def test_a_stopped_server_finds_its_processes_waiting(
+    undisturbed: tuple[Path, bytes], tmp_path: Path
+) -> None:
+    """Ctrl-Z for longer than a process looks for a server that was killed."""
+    experiment, log = undisturbed
+    with WatchedServer(experiment, tmp_path / "stopped") as server:
+        server.wait_until_under_way()
+        server.process.send_signal(signal.SIGSTOP)
+        assert not server.children["robots-2"].ended(within_s=3 * WAKE_S * WAKES_WITHOUT_HUB)
+        server.process.send_signal(signal.SIGCONT)
+        assert server.finish() == 0
+    assert (tmp_path / "stopped" / "trial-000.mcap").read_bytes() == log

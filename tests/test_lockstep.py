@@ -172,19 +172,70 @@ def test_an_answer_of_any_size_arrives(swarm: Swarm) -> None:
     hub.finish()
 
 
-def test_what_a_step_raises_ends_the_process(swarm: Swarm) -> None:
-    def failing(link: LockstepLink) -> Step:  # noqa: ARG001
-        def step(t_ns: int) -> None:
-            raise ZeroDivisionError(t_ns)
+def test_ticks_repeated_at_once_are_answered_once_more(swarm: Swarm) -> None:
+    """Twenty answers, each near the most that Zenoh's thread sends itself, would fill its queue."""
+    event = pb.Event(text="x" * (SENT_AT_ONCE_BYTES - 1000))
 
-        return step
+    def talker(link: LockstepLink) -> Step:
+        return lambda t_ns: link.publish(keys.EVENT, event, f"a{t_ns}")
 
-    swarm.start("a", failing)
+    swarm.start("a", talker)
     hub = swarm.hub("a")
+    answers: SimpleQueue[bytes] = SimpleQueue()
+    swarm.bus.on_arrival(LOCKSTEP_DONE, answers.put)
     hub.start()
     hub.advance()
-    swarm.stack.pop_all().close()
-    assert [repr(error) for error in swarm.raised] == ["ZeroDivisionError(100000000)"]
+    again = swarm.bus.sender(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
+    for _ in range(20):
+        again.put(TICK.pack(1, 100_000_000, 100_000_000, 1))
+    hub.gather()
+    numbers = [unpack_answer(answers.get()).number]
+    while numbers.count(1) < 2:
+        numbers.append(unpack_answer(answers.get()).number)
+    hub.advance()
+    assert [item.key for item in hub.gather().items] == ["robot/a200000000/event"]
+    hub.finish()
+    while not answers.empty():
+        numbers.append(unpack_answer(answers.get()).number)
+    assert numbers.count(1) < 20
+
+
+class FailingStep:
+    """A step that writes its time down and raises."""
+
+    def __init__(self) -> None:
+        self.times_ns: list[int] = []
+
+    def __call__(self, t_ns: int) -> None:
+        self.times_ns.append(t_ns)
+        raise ZeroDivisionError(t_ns)
+
+
+def test_what_a_step_raises_ends_the_process_and_no_other_step_is_made(swarm: Swarm) -> None:
+    step = FailingStep()
+    ticks: SimpleQueue[bytes] = SimpleQueue()
+    with Bus(BusSettings(swarm.endpoint)) as bus:
+        link = LockstepLink(bus, "a")
+        raised: list[Exception] = []
+        process = threading.Thread(target=raises, args=(link, step, raised))
+        process.start()
+        hub = swarm.hub("a")
+        hub.start()
+        hub.advance()
+        process.join()
+        bus.on_arrival(LOCKSTEP_TICK.format(process="a"), ticks.put)
+        hub.advance()
+        while TICK.unpack_from(ticks.get())[0] != hub.number:
+            pass
+    assert [repr(error) for error in raised] == ["ZeroDivisionError(100000000)"]
+    assert step.times_ns == [100_000_000]
+
+
+def raises(link: LockstepLink, step: Step, raised: list[Exception]) -> None:
+    try:
+        link.run(step)
+    except Exception as error:
+        raised.append(error)
 
 
 LEAVER = """
@@ -217,6 +268,38 @@ def test_a_process_that_is_told_to_leave_ends_its_step_first(swarm: Swarm) -> No
     hub.advance()
     assert leaver.communicate()[0] == "stepped\nleft\n"
     assert leaver.returncode == 128 + signal.SIGTERM
+
+
+SLOW = """
+import argparse, sys, time
+from swarm.bus import BusSettings
+from swarm.process import add_common_arguments, joined
+
+def step(t_ns):
+    end_s = time.monotonic() + 2 * BusSettings("").lease_s
+    while time.monotonic() < end_s:
+        "Zenoh's thread gives no sign of life meanwhile."
+
+parser = argparse.ArgumentParser()
+add_common_arguments(parser)
+words = ["none.toml", "--lockstep", "--process", "a", "--connect", sys.argv[1]]
+with joined(parser.parse_args(words), "robot", ["a"], 0.1) as link:
+    link.run(step)
+"""
+
+
+def test_a_process_stays_present_while_it_steps(swarm: Swarm) -> None:
+    process = subprocess.Popen([sys.executable, "-c", SLOW, swarm.endpoint])
+    answers: list[bytes] = []
+    swarm.bus.on_arrival(LOCKSTEP_DONE, answers.append)
+    hub = swarm.hub("a")
+    hub.start()
+    hub.advance()
+    while not any(unpack_answer(answer).number == 1 for answer in answers):
+        assert swarm.bus.alive("alive/robot/**")
+    hub.gather()
+    hub.finish()
+    assert process.wait() == 0
 
 
 def test_bytes_that_are_no_tick_end_the_process_with_a_clear_line(swarm: Swarm) -> None:

@@ -24,11 +24,9 @@ class Child:
     pid: int
     handle: int
 
-    def ended(self) -> bool:
+    def ended(self, within_s: float = PATIENCE_S) -> bool:
         """Wait for its end; False if it hangs."""
-        waiter = select.poll()
-        waiter.register(self.handle, select.POLLIN)
-        return bool(waiter.poll(PATIENCE_S * 1000))
+        return _is_readable(self.handle, within_s)
 
 
 @dataclass
