@@ -17,7 +17,7 @@ from robot_agent.expert import Expert
 from robot_agent.inbox import AgentInbox
 from robot_agent.learner import Learner
 from robot_agent.motion import Motion, MotionSettings
-from robot_agent.pose import PoseEstimator
+from robot_agent.pose import PoseAt, PoseEstimator
 from robot_agent.reports import Reporter
 from swarm.experiment import Experiment, RobotSettings, Role
 from swarm.keys import Topic
@@ -48,18 +48,19 @@ class Assembly:
         parts = DriverParts(settings, robot, EpuckGeometry(), self._link, generator)
         driver = make_driver(parts)
         brain = self._brain(robot, publish)
+        estimator = PoseEstimator(parts.geometry)
         motion = MotionSettings(period_s=settings.simulation.tick_s)
         return Agent(
             settings.compartment(robot),
             brain,
             driver.body,
-            PoseEstimator(parts.geometry),
+            estimator,
             Motion(motion, parts.geometry),
             AgentInbox(self._link, name),
             Reporter(publish),
             settings.learning.blocked_move_s,
             settings.learning.rest_s,
-            _visits(parts, driver, brain, publish),
+            _visits(parts, driver, brain, estimator.pose, publish),
         )
 
     def _brain(self, robot: RobotSettings, publish: Publish) -> Brain:
@@ -88,10 +89,12 @@ class Assembly:
         return spawned_generator(self._seed, robot.group, self._trial, robot.id, component)
 
 
-def _visits(parts: DriverParts, driver: Driver, brain: Brain, publish: Publish) -> BeginVisit | None:
+def _visits(
+    parts: DriverParts, driver: Driver, brain: Brain, pose_at: PoseAt, publish: Publish
+) -> BeginVisit | None:
     """Only a robot that watches loads what it takes to see."""
     if not parts.robot.watches or not isinstance(brain, Learner):
         return None
     from robot_agent.sight import visits_of
 
-    return visits_of(parts, driver, brain, publish)
+    return visits_of(parts, driver, brain, pose_at, publish)

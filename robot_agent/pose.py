@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -11,6 +12,9 @@ from robot_agent.drivers.epuck import EpuckGeometry
 from robot_agent.heading import HeadingFilter, HeadingSettings
 from robot_agent.odometry import Odometry, Reckoned
 from swarm.geometry import Pose, wrap_angle_rad
+
+PoseAt = Callable[[int], Pose | None]
+"""Where the robot itself was at a time in nanoseconds; None if that is not known (any more)."""
 
 
 @dataclass(frozen=True, slots=True)

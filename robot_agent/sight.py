@@ -18,12 +18,15 @@ from robot_agent.imitation.calibration import learn_colour_table
 from robot_agent.imitation.colour import ColourTable, load_colour_table
 from robot_agent.imitation.seeing import PROFILES, Seer
 from robot_agent.learner import Learner
+from robot_agent.pose import PoseAt
 from robot_agent.visit import Eyes, Visit
 from swarm.experiment import Experiment
 from swarm.messages import swarm_pb2 as pb
 
 
-def visits_of(parts: DriverParts, driver: Driver, learner: Learner, publish: Publish) -> BeginVisit:
+def visits_of(
+    parts: DriverParts, driver: Driver, learner: Learner, pose_at: PoseAt, publish: Publish
+) -> BeginVisit:
     """What makes a visit of an order, for a learner that watches the robot named in its settings."""
     experiment = parts.experiment
     settings, demonstrator = experiment.visits, experiment.robot_named(parts.robot.watches)
@@ -34,6 +37,7 @@ def visits_of(parts: DriverParts, driver: Driver, learner: Learner, publish: Pub
     eyes = Eyes(
         driver.camera(model),
         Seer(settings.profile.value, model, table),
+        pose_at,
         settings,
         experiment.arena.cell_m,
         watched.centre(watched.grid.start),

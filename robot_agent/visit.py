@@ -15,6 +15,7 @@ from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, choose_wind
 from robot_agent.imitation.seeing import Seer
 from robot_agent.imitation.watching import Watch
 from robot_agent.ledger import observation_message
+from robot_agent.pose import PoseAt
 from swarm import keys
 from swarm.clock import NS_PER_S
 from swarm.experiment import VisitSettings
@@ -32,6 +33,7 @@ class Eyes:
 
     camera: Camera
     seer: Seer
+    pose_at: PoseAt
     settings: VisitSettings
     cell_m: float
     start_m: tuple[float, float]
@@ -84,7 +86,8 @@ class Visit:
             return None
         self._say(pb.Visit.WATCHING)
         eyes = self._eyes
-        return Watch(eyes.camera, eyes.seer, t_ns, eyes.settings.duration_s, eyes.settings.frames_per_s)
+        duration_s, frames_per_s = eyes.settings.duration_s, eyes.settings.frames_per_s
+        return Watch(eyes.camera, eyes.seer, eyes.pose_at, t_ns, duration_s, frames_per_s)
 
     def _finish(self, watch: Watch) -> None:
         copied = self._copied(watch)

@@ -88,6 +88,7 @@ class StagedVisit:
         return Eyes(
             self.camera,
             self.stage.seer,
+            self.stage.robot.pose_at,
             settings.visits,
             settings.arena.cell_m,
             compartment.centre(compartment.grid.start),

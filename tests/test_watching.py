@@ -77,7 +77,7 @@ def test_a_late_frame_is_put_where_the_turning_observer_looked_then() -> None:
     stage, shown = Stage(EXPERIMENT, np.random.default_rng(2)), across()
     stage.shown = stage.scenes(shown)
     began_ns = stage.settle()
-    watch = Watch(Late(stage), stage.seer, began_ns, 0.1 * len(shown.track), 5.0)
+    watch = Watch(Late(stage), stage.seer, stage.robot.pose_at, began_ns, 0.1 * len(shown.track), 5.0)
     stage.run(watch, began_ns, len(shown.track))
     errors_m = []
     for position in watch.positions:
@@ -102,7 +102,7 @@ class Turning:
 def test_it_looks_to_both_sides_for_a_robot_that_it_does_not_see() -> None:
     stage = Stage(EXPERIMENT, np.random.default_rng(3))
     began_ns = stage.settle()
-    turning = Turning(Watch(stage.camera, stage.seer, began_ns, 15.0, 5.0), [])
+    turning = Turning(Watch(stage.camera, stage.seer, stage.robot.pose_at, began_ns, 15.0, 5.0), [])
     headings_rad = []
 
     def empty(tick: int) -> Scene:
@@ -119,7 +119,7 @@ def test_it_looks_to_both_sides_for_a_robot_that_it_does_not_see() -> None:
 
 def test_without_a_pose_it_takes_no_frame_and_stands() -> None:
     stage = Stage(EXPERIMENT, np.random.default_rng(3))
-    watch = Watch(stage.camera, stage.seer, 0, 10.0, 5.0)
+    watch = Watch(stage.camera, stage.seer, stage.robot.pose_at, 0, 10.0, 5.0)
     assert [watch.step(None, tick * TICK_NS) for tick in range(20)] == [0.0] * 20
     assert watch.looks == []
 
@@ -156,7 +156,7 @@ def test_a_faulty_camera_ends_the_watch(word: str, failed: str) -> None:
     stage = Stage(EXPERIMENT, np.random.default_rng(3))
     stage.shown = stage.scenes(across())
     began_ns = stage.settle()
-    watch = Watch(Faulty(stage, word), stage.seer, began_ns, len(word) / 5, 5.0)
+    watch = Watch(Faulty(stage, word), stage.seer, stage.robot.pose_at, began_ns, len(word) / 5, 5.0)
     stage.run(watch, began_ns, 2 * len(word))
     assert watch.failed == failed
     assert watch.ended(began_ns + 2 * len(word) * TICK_NS)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from robot_agent.drivers.camera import Camera, Frame
 from robot_agent.imitation.observation import ObservedPosition, position_from_sighting
-from robot_agent.imitation.own_poses import OwnPoses
 from robot_agent.imitation.searching import Search
 from robot_agent.imitation.seeing import NotSeen, Seer, Sighting
+from robot_agent.pose import PoseAt
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose, wrap_angle_rad
 
@@ -44,17 +44,23 @@ class Watch:
     """
 
     def __init__(
-        self, camera: Camera, seer: Seer, began_ns: int, duration_s: float, frames_per_s: float
+        self,
+        camera: Camera,
+        seer: Seer,
+        pose_at: PoseAt,
+        began_ns: int,
+        duration_s: float,
+        frames_per_s: float,
     ) -> None:
         self.looks: list[Looked] = []
         self.failed = ""
         self._camera = camera
         self._seer = seer
+        self._pose_at = pose_at
         self._ends_ns = began_ns + round(duration_s * NS_PER_S)
         self._period_ns = round(NS_PER_S / frames_per_s)
         self._due_ns = began_ns
         self._stood: Pose | None = None
-        self._own_poses = OwnPoses()
         self._search = Search(began_ns)
         self._towards_rad: float | None = None
         self._looked_from_rad: float | None = None
@@ -72,7 +78,6 @@ class Watch:
         if own_pose is None:
             return 0.0
         self._stood = self._stood or own_pose
-        self._own_poses.add(own_pose, t_ns)
         if self._stood.distance_m(own_pose) > PUSHED_M:
             self.failed = "the observer was pushed"
         elif self._due_ns <= t_ns < self._ends_ns:
@@ -91,7 +96,8 @@ class Watch:
         return counts.most_common(1)[0][0].value if counts else ""
 
     def _take(self, frame: Frame | None) -> None:
-        if frame is None:
+        exposed_from = self._pose_at(frame.t_ns) if frame else None
+        if frame is None or exposed_from is None:
             self._missing += 1
             if self._missing > MOST_MISSING_FRAMES:
                 self.failed = f"the camera stalled: no frame for {self._missing} periods"
@@ -102,11 +108,10 @@ class Watch:
         if self._repeated >= MOST_REPEATED_FRAMES:
             self.failed = f"the camera is frozen: {self._repeated + 1} equal frames"
             return
-        self._look(frame, frame_hash)
+        self._look(frame, frame_hash, exposed_from)
 
-    def _look(self, frame: Frame, frame_hash: int) -> None:
+    def _look(self, frame: Frame, frame_hash: int, own_pose: Pose) -> None:
         """A frame comes late: what it shows is put where the robot was when it was exposed."""
-        own_pose = self._own_poses.at(frame.t_ns)
         from_rad, self._looked_from_rad = self._looked_from_rad, own_pose.theta_rad
         turned_rad = None if from_rad is None else wrap_angle_rad(own_pose.theta_rad - from_rad)
         answer = self._seer.look(frame, turned_rad)

@@ -59,6 +59,10 @@ class TrackedRobot:
         self._under_way.append(self._measured(t_ns))
         if fix := self._under_way.popleft():
             self._estimator.fix(*fix)
+        return self.pose_at(t_ns)
+
+    def pose_at(self, t_ns: int) -> Pose | None:
+        """What the robot believes now of where it was then."""
         return self._estimator.pose(t_ns)
 
     @property

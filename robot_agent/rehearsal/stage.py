@@ -102,7 +102,8 @@ class Stage:
         visits = self._experiment.visits
         began_ns = self.settle()
         duration_s = len(demonstration.track) * self._experiment.simulation.tick_s
-        watch = Watch(self.camera, self.seer, began_ns, duration_s, visits.frames_per_s)
+        pose_at = self.robot.pose_at
+        watch = Watch(self.camera, self.seer, pose_at, began_ns, duration_s, visits.frames_per_s)
         self.run(watch, began_ns, len(demonstration.track))
         profile, cell_m = CopyProfile(visits.profile.value), self._experiment.arena.cell_m
         copied = copy_moves(watch.positions, profile, cell_m, watch.expected_frames)
