@@ -6,7 +6,7 @@ import socket
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -20,7 +20,7 @@ from server.supervisor import ProcessSpec, Supervisor
 from swarm.bus import Bus, BusSettings
 from swarm.clock import scaled_clock, unix_clock
 from swarm.experiment import Experiment
-from swarm.lockstep import LEASE_S
+from swarm.lockstep import patient
 from swarm.presence import Presence, claim
 
 LOCKSTEP_BATCHES_BETWEEN_FLUSHES = 1000
@@ -54,7 +54,7 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
         with (
             socket_endpoint() as endpoint,
             keeping_to(cores[0]) if pace.lockstep else nullcontext(),
-            Bus(_settings(endpoint, pace)) as bus,
+            Bus(_hub_settings(endpoint, pace)) as bus,
         ):
             specs = run_table(experiment, file, endpoint, trial, pace, output)
             claim(bus, _presence())
@@ -65,9 +65,9 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
     return stage
 
 
-def _settings(endpoint: str, pace: Pace) -> BusSettings:
+def _hub_settings(endpoint: str, pace: Pace) -> BusSettings:
     settings = BusSettings(endpoint, hub=True)
-    return replace(settings, lease_s=LEASE_S) if pace.lockstep else settings
+    return patient(settings) if pace.lockstep else settings
 
 
 def _hub(

@@ -75,10 +75,7 @@ class Sender:
         self._put = publisher.put
 
     def put(self, payload: bytes, attachment: bytes | None = None) -> None:
-        if attachment is None:
-            self._put(payload)
-        else:
-            self._put(payload, attachment=attachment)
+        self._put(payload, attachment=attachment)
 
 
 class Bus:

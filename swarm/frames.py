@@ -45,8 +45,7 @@ def unpack_answer(frame: bytes) -> Answer:
     """Raises one of `BAD_FRAME` if the bytes are no answer."""
     number, size = _ANSWER.unpack_from(frame)
     items_at = _ANSWER.size + size
-    items = unpack_items(frame, items_at) if len(frame) != items_at else []
-    return Answer(number, frame[_ANSWER.size : items_at].decode(), items)
+    return Answer(number, frame[_ANSWER.size : items_at].decode(), unpack_items(frame, items_at))
 
 
 def unpack_items(frame: bytes, at: int) -> list[Item]:

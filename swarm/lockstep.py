@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from functools import partial
 from typing import Any, TypeVar
 
 from google.protobuf.message import Message
 
-from swarm.bus import Bus
+from swarm.bus import Bus, BusSettings
 from swarm.errors import RunFailedError
 from swarm.feed import Feed
 from swarm.frames import BAD_FRAME, TICK, pack_answer, pack_item, unpack_items
@@ -26,6 +27,11 @@ SENT_AT_ONCE_BYTES = 32_768
 """Far below the two batches of 64 KiB that Zenoh holds: with them full its thread would wait for itself."""
 EPOCH = 1
 """A process of a lockstep run is started once, so its epoch is the same in every repetition."""
+
+
+def patient(settings: BusSettings) -> BusSettings:
+    """Settings of a session, hub's or process's, for a lockstep."""
+    return replace(settings, lease_s=LEASE_S)
 
 
 class LockstepLink:

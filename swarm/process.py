@@ -12,7 +12,6 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from types import FrameType
 from typing import NoReturn
@@ -22,7 +21,7 @@ from swarm.clock import scaled_clock, unix_clock
 from swarm.errors import UserError
 from swarm.experiment import Experiment
 from swarm.link import Link, LiveLink
-from swarm.lockstep import EPOCH, LEASE_S, LockstepLink
+from swarm.lockstep import EPOCH, LockstepLink, patient
 from swarm.presence import Presence, claim
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
@@ -65,7 +64,7 @@ def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s:
     epoch = EPOCH if arguments.lockstep else time.time_ns()
     settings = BusSettings(arguments.connect, config=arguments.zenoh_config)
     if arguments.lockstep:
-        settings = replace(settings, lease_s=LEASE_S)
+        settings = patient(settings)
     with Bus(settings) as bus:
         for name in names:
             claim(bus, Presence(kind, name, socket.gethostname(), epoch))

@@ -12,7 +12,7 @@ import pytest
 
 from swarm.bus import Bus, BusSettings
 from swarm.presence import Presence, claim, present
-from tests.benchmarks.lockstep import free_endpoint
+from tests.endpoints import free_endpoint
 from tests.swarm_runs import ROOT, experiment_text, write_experiment
 
 

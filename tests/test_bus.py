@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -13,15 +12,14 @@ import pytest
 from swarm.bus import Bus, BusSettings, Inbox, Sender
 from swarm.errors import UserError
 from swarm.keys import Delivery
+from tests.endpoints import free_endpoint
 
 WAKE_S = 0.02
 
 
 @pytest.fixture
 def endpoint() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    return free_endpoint()
 
 
 @pytest.fixture

@@ -85,29 +85,26 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, bytes]:
     return experiment, (directory / "run" / "trial-000.mcap").read_bytes()
 
 
-def test_a_stopped_process_is_named_and_the_log_shows_nothing_of_it(
-    undisturbed: tuple[Path, bytes], tmp_path: Path
-) -> None:
+@pytest.fixture
+def disturbed(undisturbed: tuple[Path, bytes], tmp_path: Path) -> Iterator[WatchedServer]:
+    """The same under way; whatever a test does to it, it must end as if nothing had been."""
     experiment, log = undisturbed
-    with WatchedServer(experiment, tmp_path / "stopped") as server:
+    with WatchedServer(experiment, tmp_path / "run") as server:
         server.wait_until_under_way()
-        victim = server.children["robots-2"]
-        os.kill(victim.pid, signal.SIGSTOP)
-        server.wait_for("still waits for robots-2")
-        os.kill(victim.pid, signal.SIGCONT)
+        yield server
         assert server.finish() == 0
-    assert (tmp_path / "stopped" / "trial-000.mcap").read_bytes() == log
+    assert (tmp_path / "run" / "trial-000.mcap").read_bytes() == log
 
 
-def test_a_stopped_server_finds_its_processes_waiting(
-    undisturbed: tuple[Path, bytes], tmp_path: Path
-) -> None:
+def test_a_stopped_process_is_named_and_the_log_shows_nothing_of_it(disturbed: WatchedServer) -> None:
+    victim = disturbed.children["robots-2"]
+    os.kill(victim.pid, signal.SIGSTOP)
+    disturbed.wait_for("still waits for robots-2")
+    os.kill(victim.pid, signal.SIGCONT)
+
+
+def test_a_stopped_server_finds_its_processes_waiting(disturbed: WatchedServer) -> None:
     """Ctrl-Z for longer than a process looks for a server that was killed."""
-    experiment, log = undisturbed
-    with WatchedServer(experiment, tmp_path / "stopped") as server:
-        server.wait_until_under_way()
-        server.process.send_signal(signal.SIGSTOP)
-        assert not server.children["robots-2"].ended(within_s=3 * WAKE_S * WAKES_WITHOUT_HUB)
-        server.process.send_signal(signal.SIGCONT)
-        assert server.finish() == 0
-    assert (tmp_path / "stopped" / "trial-000.mcap").read_bytes() == log
+    disturbed.process.send_signal(signal.SIGSTOP)
+    assert not disturbed.children["robots-2"].ended(within_s=3 * WAKE_S * WAKES_WITHOUT_HUB)
+    disturbed.process.send_signal(signal.SIGCONT)

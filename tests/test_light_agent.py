@@ -12,7 +12,7 @@ from server.supervisor import ProcessSpec, Supervisor
 from swarm.bus import Bus, BusSettings
 from swarm.presence import Presence, claim
 from tests.benchmarks.agent_size import agent_size, import_cost
-from tests.benchmarks.lockstep import free_endpoint
+from tests.endpoints import free_endpoint
 from tests.swarm_runs import ROOT, experiment_text, learners, write_experiment
 
 LAB = (

@@ -9,7 +9,7 @@ from swarm.bus import Bus, BusSettings
 from swarm.clock import unix_clock
 from swarm.link import LiveLink, Sequencer
 from swarm.messages import swarm_pb2 as pb
-from tests.benchmarks.lockstep import free_endpoint
+from tests.endpoints import free_endpoint
 
 PERIOD_S = 0.01
 

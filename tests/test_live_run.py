@@ -24,7 +24,7 @@ from swarm.keys import Delivery, Topic, topic_of
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header, Item
 from swarm.presence import Presence, claim
-from tests.benchmarks.lockstep import free_endpoint
+from tests.endpoints import free_endpoint
 from tests.swarm_runs import ROOT, experiment_text, learners, messages, run_server, write_experiment
 
 SPEED = 20.0

@@ -25,7 +25,7 @@ from swarm.lockstep import SENT_AT_ONCE_BYTES, LockstepLink, key_matches
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header, Item
 from swarm.presence import Presence, claim
-from tests.benchmarks.lockstep import free_endpoint
+from tests.endpoints import free_endpoint
 
 TICK_S = 0.1
 
@@ -60,6 +60,14 @@ def test_no_cut_frame_is_read_as_another() -> None:
         unpack_items(b"\xff" * 100, TICK.size)
 
 
+def run(link: LockstepLink, step: Step, raised: list[Exception]) -> None:
+    """A process's main thread; what it raises is kept."""
+    try:
+        link.run(step)
+    except Exception as error:
+        raised.append(error)
+
+
 class Swarm:
     """A hub here, and processes of one robot each in threads with a session of their own."""
 
@@ -84,10 +92,7 @@ class Swarm:
     def _run(self, robot: str, step_of: Callable[[LockstepLink], Step]) -> None:
         with Bus(BusSettings(self.endpoint)) as bus:
             link = LockstepLink(bus, robot)
-            try:
-                link.run(step_of(link))
-            except Exception as error:
-                self.raised.append(error)
+            run(link, step_of(link), self.raised)
 
     def _reporter(self, robot: str, link: LockstepLink) -> Step:
         heard = self.heard.setdefault(robot, [])
@@ -217,7 +222,7 @@ def test_what_a_step_raises_ends_the_process_and_no_other_step_is_made(swarm: Sw
     with Bus(BusSettings(swarm.endpoint)) as bus:
         link = LockstepLink(bus, "a")
         raised: list[Exception] = []
-        process = threading.Thread(target=raises, args=(link, step, raised))
+        process = threading.Thread(target=run, args=(link, step, raised))
         process.start()
         hub = swarm.hub("a")
         hub.start()
@@ -229,13 +234,6 @@ def test_what_a_step_raises_ends_the_process_and_no_other_step_is_made(swarm: Sw
             pass
     assert [repr(error) for error in raised] == ["ZeroDivisionError(100000000)"]
     assert step.times_ns == [100_000_000]
-
-
-def raises(link: LockstepLink, step: Step, raised: list[Exception]) -> None:
-    try:
-        link.run(step)
-    except Exception as error:
-        raised.append(error)
 
 
 LEAVER = """

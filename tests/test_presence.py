@@ -9,7 +9,7 @@ import pytest
 from swarm.bus import Bus, BusSettings
 from swarm.errors import UserError
 from swarm.presence import Presence, claim, present
-from tests.benchmarks.lockstep import free_endpoint
+from tests.endpoints import free_endpoint
 
 
 @pytest.fixture

@@ -16,8 +16,8 @@ from server.lockstep_hub import LockstepHub
 from server.supervisor import ProcessSpec, Supervisor
 from swarm.bus import Bus, BusSettings
 from swarm.presence import Presence, claim
-from tests.benchmarks.lockstep import free_endpoint
 from tests.benchmarks.processes import resident_mib
+from tests.endpoints import free_endpoint
 from tests.swarm_runs import ROOT, experiment_text, learners, write_experiment
 
 TICKS = 200

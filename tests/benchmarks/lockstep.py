@@ -27,7 +27,7 @@ from server.lockstep_hub import LockstepHub
 from server.stage import socket_endpoint
 from server.supervisor import ProcessSpec, Supervisor
 from swarm.bus import Bus, BusSettings
-from swarm.lockstep import LockstepLink
+from swarm.lockstep import LockstepLink, patient
 from swarm.presence import Presence, claim
 from tests.benchmarks.processes import cpu_of
 
@@ -55,7 +55,7 @@ SCHEDULES = {
 
 def zenoh_worker(name: str, endpoint: str) -> None:
     """An agent process without agents."""
-    with Bus(BusSettings(endpoint)) as bus:
+    with Bus(patient(BusSettings(endpoint))) as bus:
         LockstepLink(bus, name).run(no_step)
 
 
@@ -129,12 +129,6 @@ def zenoh_advance(hub: LockstepHub) -> Advance:
     return advance
 
 
-def free_endpoint() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-
-
 def measure(processes: int, rounds: int, ticks: int) -> dict[str, object]:
     """All with their processes alive, a piece of each in turn."""
     cores = available_cores()
@@ -142,7 +136,7 @@ def measure(processes: int, rounds: int, ticks: int) -> dict[str, object]:
         directory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         endpoint = stack.enter_context(socket_endpoint())
         stack.enter_context(keeping_to(cores[0]))
-        bus = stack.enter_context(Bus(BusSettings(endpoint, hub=True)))
+        bus = stack.enter_context(Bus(patient(BusSettings(endpoint, hub=True))))
         claim(bus, Presence("server", "server", "here", 1))
         specs = zenoh_specs(endpoint, processes)
         agents = stack.enter_context(Supervisor(specs, directory / "zenoh", spread(processes, cores)))
