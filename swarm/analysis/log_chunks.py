@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 import zlib
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from io import BytesIO
 from typing import NamedTuple
@@ -71,11 +72,9 @@ def _decompress(compression: str, data: bytes, limit: int) -> bytes:
     return data
 
 
-def split(records: bytes) -> ChunkRecords:
-    """Sort an unpacked chunk's records. This loop sees every message of a log: it stays this plain."""
-    found = ChunkRecords()
-    entries, header, fields = found.entries, _RECORD.unpack_from, _MESSAGE.unpack_from
-    at, end = 0, len(records)
+def places(records: bytes) -> Iterator[tuple[int, int, int]]:
+    """Of each record of an unpacked chunk: its kind, and where its contents begin and end."""
+    header, at, end = _RECORD.unpack_from, 0, len(records)
     while at < end:
         if at + _RECORD.size > end:
             raise DamagedChunkError("a chunk ends within a record")
@@ -83,11 +82,19 @@ def split(records: bytes) -> ChunkRecords:
         body, at = at + _RECORD.size, at + _RECORD.size + length
         if at > end or (opcode == MESSAGE and length < _MESSAGE.size):
             raise DamagedChunkError("a chunk holds a record of an impossible length")
+        yield opcode, body, at
+
+
+def split(records: bytes) -> ChunkRecords:
+    """Sort an unpacked chunk's records. This loop sees every message of a log: it stays this plain."""
+    found = ChunkRecords()
+    entries, fields = found.entries, _MESSAGE.unpack_from
+    for opcode, body, end in places(records):
         if opcode != MESSAGE:
-            found.definitions.append(Definition(opcode, records[body:at]))
+            found.definitions.append(Definition(opcode, records[body:end]))
             continue
         channel, sequence, receive_t_ns, publish_t_ns = fields(records, body)
-        entry = (sequence, receive_t_ns, publish_t_ns, records[body + _MESSAGE.size : at])
+        entry = (sequence, receive_t_ns, publish_t_ns, records[body + _MESSAGE.size : end])
         if channel in entries:
             entries[channel].append(entry)
         else:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,14 +11,13 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, Message, Metadata, Schema
 from small_mcap import CompressionType, McapWriter
 
-from swarm.analysis.log_chunks import DamagedChunkError, unpack
+from swarm.analysis.log_chunks import DamagedChunkError, places, unpack
 from swarm.analysis.log_framing import FramingError, Record, records
 from swarm.analysis.log_reader import Damage, LogError, open_log
 from swarm.analysis.log_records import BROKEN, decoded, indexed_definitions
 from swarm.new_file import new_file
 
 CHUNK_BYTES = 256 * 1024
-_RECORD = struct.Struct("<BQ")
 
 
 @dataclass(frozen=True)
@@ -129,18 +127,7 @@ def _contents(record: Record) -> Iterator[object]:
     found = decoded(record.opcode, record.body)
     if isinstance(found, Chunk):
         inside = unpack(found.compression, found.data, found.uncompressed_size, found.uncompressed_crc)
-        for opcode, body in _split(inside):
-            yield decoded(opcode, body)
+        for opcode, body, end in places(inside):
+            yield decoded(opcode, inside[body:end])
     else:
         yield found
-
-
-def _split(inside: bytes) -> Iterator[tuple[int, bytes]]:
-    """Kind and contents of a chunk's records."""
-    at = 0
-    while at < len(inside):
-        opcode, size = _RECORD.unpack_from(inside, at)
-        at += _RECORD.size + size
-        if at > len(inside):
-            raise DamagedChunkError("a record reaches beyond its chunk")
-        yield opcode, inside[at - size : at]
