@@ -63,7 +63,7 @@ class LiveHub:
         header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
         if key not in self._senders:
             self._senders[key] = self._bus.sender(key, topic.delivery)
-        self._senders[key].put(message.SerializeToString(), header.pack())
+        self._senders[key].put(message.SerializeToString(), attachment=header.pack())
 
     def advance(self) -> None:
         """In real time the processes need no leave."""

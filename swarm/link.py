@@ -79,7 +79,7 @@ class LiveLink:
         header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
         if key not in self._senders:
             self._senders[key] = self._bus.sender(key, topic.delivery)
-        self._senders[key].put(message.SerializeToString(), header.pack())
+        self._senders[key].put(message.SerializeToString(), attachment=header.pack())
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):

@@ -72,7 +72,7 @@ def test_every_payload_arrives_in_order_with_what_is_beside_it(hub: Bus, client:
     for number in range(1000):
         sender.put(str(number).encode())
     assert drained(sender, inbox, wake, b"last")[:-1] == [str(number).encode() for number in range(1000)]
-    sender.put(b"payload", b"header")
+    sender.put(b"payload", attachment=b"header")
     while not (samples := inbox.poll()):
         wake.wait()
     assert (samples[0].key, samples[0].payload, samples[0].attachment) == (

@@ -146,9 +146,12 @@ def test_corrupt_messages_are_counted_and_nothing_dies(swarm: LiveSwarm) -> None
             if status.bad_messages:
                 break
             pose.put(b"no header")
-            pose.put(b"\xff\xffgarbage", Header(epoch, 3 * number, 0).pack())
-            pose.put(pb.Pose(x_m=float("nan")).SerializeToString(), Header(epoch, 3 * number + 1, 0).pack())
-            pose.put(bytes(100_000), Header(epoch, 3 * number + 2, 0).pack())
+            pose.put(b"\xff\xffgarbage", attachment=Header(epoch, 3 * number, 0).pack())
+            pose.put(
+                pb.Pose(x_m=float("nan")).SerializeToString(),
+                attachment=Header(epoch, 3 * number + 1, 0).pack(),
+            )
+            pose.put(bytes(100_000), attachment=Header(epoch, 3 * number + 2, 0).pack())
     moves = swarm.received(keys.MOVE)
     numbers = [next(moves)[1].number for _ in range(5)]
     assert numbers == list(range(numbers[0], numbers[0] + 5)), "poses are still believed, and moves made"
