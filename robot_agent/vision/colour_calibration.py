@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.colour_table import OTHER, PALE, SKIRT, ColourTable
-from robot_agent.vision.frames import Frame, Words, frame_words, word_colours
+from robot_agent.vision.frames import Frame
+from robot_agent.vision.pixels import Words, frame_words, word_colours
 from swarm.errors import UserError
 
 MIN_SATURATION = 0.15

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_agent.vision.frames import WORDS
+from robot_agent.vision.pixels import WORDS
 from swarm.errors import UserError
 
 OTHER, SKIRT, PALE = 0, 1, 2

@@ -17,7 +17,8 @@ from robot_agent.vision.blobs import Blob, blobs_at_horizon
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.colour_table import SKIRT, ColourTable
 from robot_agent.vision.edges import EdgeFinder
-from robot_agent.vision.frames import Frame, Words, frame_words
+from robot_agent.vision.frames import Frame
+from robot_agent.vision.pixels import Words, frame_words
 from robot_agent.vision.skirt import (
     SKIRT_RADIUS_M,
     TILT_RAD,

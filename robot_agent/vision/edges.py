@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from robot_agent.vision.blobs import Blob
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.colour_table import PALE, ColourTable
-from robot_agent.vision.frames import Words, word_colours
+from robot_agent.vision.pixels import Words, word_colours
 
 REACH_PX = 3
 """Half the window around an edge; more than the blur, so that it holds the whole step."""

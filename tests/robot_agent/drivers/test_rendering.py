@@ -14,7 +14,7 @@ from robot_agent.drivers.sim.rendering.camera import SceneCamera, SimulatedCamer
 from robot_agent.drivers.sim.rendering.conditions import conditions
 from robot_agent.drivers.sim.rendering.scene import Body, Post, Rectangle, Scene
 from robot_agent.vision.camera_model import load_camera_model
-from robot_agent.vision.frames import frame_pixels
+from robot_agent.vision.pixels import frame_pixels
 from robot_agent.vision.skirt import half_angle_rad
 from swarm.errors import UserError
 from swarm.geometry import Compartment, Grid, Pose

@@ -13,7 +13,8 @@ from robot_agent.drivers.sim.rendering.conditions import conditions
 from robot_agent.vision.camera_model import load_camera_model
 from robot_agent.vision.colour_calibration import learn_colour_table
 from robot_agent.vision.colour_table import PALE, SKIRT, ColourTable, load_colour_table
-from robot_agent.vision.frames import WORDS, Frame, frame_words
+from robot_agent.vision.frames import Frame
+from robot_agent.vision.pixels import WORDS, frame_words
 from swarm.errors import UserError
 from tests.benchmarks.seeing import CALIBRATION
 

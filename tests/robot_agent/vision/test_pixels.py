@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robot_agent.vision.frames import Frame, frame_pixels, frame_words, word_colours
+from robot_agent.vision.frames import Frame
+from robot_agent.vision.pixels import frame_pixels, frame_words, word_colours
 
 
 def test_rgb565_has_the_high_byte_first() -> None:
