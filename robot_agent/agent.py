@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from robot_agent.checkpoint import Checkpoint
 from robot_agent.drivers.interfaces import Body
 from robot_agent.drivers.kinematics import WheelSpeeds
-from robot_agent.imitation.visit import BeginVisit
 from robot_agent.inbox import AgentInbox
 from robot_agent.navigation.motion import Motion
 from robot_agent.navigation.pose_estimator import PoseEstimator
@@ -20,7 +19,7 @@ from swarm.errors import UserError
 from swarm.geometry import Compartment, Pose
 
 if TYPE_CHECKING:
-    from robot_agent.imitation.visit import Visit
+    from robot_agent.imitation.visit import BeginVisit, Visit
 
 
 class Activity(Enum):

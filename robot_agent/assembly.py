@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from google.protobuf.message import Message
@@ -12,7 +12,6 @@ from robot_agent.agent import Agent
 from robot_agent.drivers.interfaces import Driver, DriverParts
 from robot_agent.drivers.kinematics import EpuckGeometry
 from robot_agent.drivers.registry import make_driver
-from robot_agent.imitation.visit import BeginVisit
 from robot_agent.inbox import AgentInbox
 from robot_agent.navigation.motion import Motion, MotionSettings
 from robot_agent.navigation.pose_estimator import PoseAt, PoseEstimator
@@ -27,6 +26,9 @@ from swarm.learning.q_table import QTable
 from swarm.learning.random import spawned_generator
 from swarm.messages.topics import Topic
 from swarm.runtime.node import Link
+
+if TYPE_CHECKING:
+    from robot_agent.imitation.visit import BeginVisit
 
 
 class Assembly:
