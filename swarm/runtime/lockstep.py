@@ -15,7 +15,7 @@ from swarm.messages.topics import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
 from swarm.runtime.lockstep_frames import BAD_FRAME, TICK, pack_answer, pack_item, unpack_items
 from swarm.runtime.node import Sequencer, Step
 from swarm.runtime.subscription import Feed
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 
 M = TypeVar("M", bound=Message)
 
@@ -29,7 +29,7 @@ EPOCH = 1
 """A process of a lockstep run is started once, so its epoch is the same in every repetition."""
 
 
-def patient(settings: BusSettings) -> BusSettings:
+def patient(settings: SessionSettings) -> SessionSettings:
     """Settings of a session, hub's or process's, for a lockstep."""
     return replace(settings, lease_s=LEASE_S)
 
@@ -46,10 +46,10 @@ class LockstepLink:
     large or asked for again and greetings, is left to the main thread, as is what a step raises.
     """
 
-    def __init__(self, bus: Bus, process: str) -> None:
-        self._bus = bus
+    def __init__(self, session: Session, process: str) -> None:
+        self._session = session
         self._process = process
-        self._done = bus.sender(LOCKSTEP_DONE, Delivery.EVERY)
+        self._done = session.publisher(LOCKSTEP_DONE, Delivery.EVERY)
         self._feeds: list[tuple[str, Feed[Any]]] = []
         self._routes: dict[str, tuple[Feed[Any], ...]] = {}
         self._sequencer = Sequencer()
@@ -77,7 +77,7 @@ class LockstepLink:
         self._published.append(pack_item(key, header, message.SerializeToString()))
 
     def run(self, step: Step) -> None:
-        self._bus.on_arrival(LOCKSTEP_TICK.format(process=self._process), partial(self._on_tick, step))
+        self._session.on_arrival(LOCKSTEP_TICK.format(process=self._process), partial(self._on_tick, step))
         try:
             self._wait_for_end()
         finally:
@@ -159,7 +159,7 @@ class LockstepLink:
             self._done.put(self._answer)
 
     def _hub_is_alive(self) -> bool:
-        return bool(self._bus.alive("alive/server/**"))
+        return bool(self._session.alive("alive/server/**"))
 
     def _greet(self) -> None:
         """Repeated until the first tick: a message sent right after declaring may be lost."""

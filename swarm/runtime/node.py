@@ -13,7 +13,7 @@ from swarm.messages import topics
 from swarm.messages.header import Header
 from swarm.messages.topics import Topic
 from swarm.runtime.subscription import Feed
-from swarm.runtime.zenoh_session import Bus, Inbox, Sender
+from swarm.runtime.zenoh_session import Inbox, Publisher, Session
 
 M = TypeVar("M", bound=Message)
 
@@ -56,13 +56,13 @@ class Sequencer:
 class LiveLink:
     """Takes part over the network at the pace of a clock: on boards, and in simulation at a given speed."""
 
-    def __init__(self, bus: Bus, clock: WallClock, period_s: float, epoch: int) -> None:
-        self._bus = bus
+    def __init__(self, session: Session, clock: WallClock, period_s: float, epoch: int) -> None:
+        self._session = session
         self._clock = clock
         self._period_s = period_s
         self._epoch = epoch
         self._sequencer = Sequencer()
-        self._senders: dict[str, Sender] = {}
+        self._publishers: dict[str, Publisher] = {}
         self._inboxes: list[tuple[Inbox, Feed[Any]]] = []
         self.keys_received: set[str] = set()
         self._run_states = self.subscribe(topics.RUN_STATE)
@@ -70,16 +70,16 @@ class LiveLink:
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
         """A feed filled at every tick; `*` in a key keeps every message, since it holds many keys."""
         feed = Feed(topic)
-        inbox = self._bus.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
+        inbox = self._session.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
         self._inboxes.append((inbox, feed))
         return feed
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         key = topic.key(robot)
         header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
-        if key not in self._senders:
-            self._senders[key] = self._bus.sender(key, topic.delivery)
-        self._senders[key].put(message.SerializeToString(), attachment=header.pack())
+        if key not in self._publishers:
+            self._publishers[key] = self._session.publisher(key, topic.delivery)
+        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):

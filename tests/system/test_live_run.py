@@ -23,7 +23,7 @@ from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import Delivery, Topic, topic_of
 from swarm.runtime.liveliness import Presence, claim
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 from tests.support.swarm_runs import ROOT, experiment_text, learners, messages, run_server, write_experiment
 
@@ -52,11 +52,11 @@ class LiveSwarm:
         self.endpoint = free_endpoint()
         self._stack = stack
         self._started_ns = time.monotonic_ns()
-        self.bus = stack.enter_context(Bus(BusSettings(self.endpoint, hub=True)))
-        claim(self.bus, Presence("server", "server", "here", 1))
+        self.session = stack.enter_context(Session(SessionSettings(self.endpoint, hub=True)))
+        claim(self.session, Presence("server", "server", "here", 1))
         clock = scaled_clock(self._started_ns, SPEED)
         self.processes: list[subprocess.Popen[bytes]] = []
-        self.hub = LiveHub(self.bus, clock, Experiment.load(self.file), self.check, print)
+        self.hub = LiveHub(self.session, clock, Experiment.load(self.file), self.check, print)
         self._batches = 0
 
     def start(self, module: str, *arguments: str) -> subprocess.Popen[bytes]:
@@ -139,8 +139,8 @@ def _run_in(path: Path) -> str:
 def test_corrupt_messages_are_counted_and_nothing_dies(swarm: LiveSwarm) -> None:
     swarm.start("tracker_bridge")
     swarm.start_agent()
-    with Bus(BusSettings(swarm.endpoint)) as stranger:
-        pose = stranger.sender(topics.POSE.key("r0"), Delivery.NEWEST)
+    with Session(SessionSettings(swarm.endpoint)) as stranger:
+        pose = stranger.publisher(topics.POSE.key("r0"), Delivery.NEWEST)
         epoch = time.time_ns()
         for number, (_, status) in enumerate(swarm.received(topics.STATUS), 1):
             if status.bad_messages:

@@ -32,7 +32,7 @@ from swarm.runtime.lockstep_frames import (
     unpack_items,
 )
 from swarm.runtime.node import Step
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 
 TICK_S = 0.1
@@ -82,14 +82,14 @@ class Swarm:
     def __init__(self, stack: ExitStack) -> None:
         self.endpoint = free_endpoint()
         self.stack = stack
-        self.bus = stack.enter_context(Bus(BusSettings(self.endpoint, hub=True)))
-        claim(self.bus, Presence("server", "server", "here", 1))
+        self.session = stack.enter_context(Session(SessionSettings(self.endpoint, hub=True)))
+        claim(self.session, Presence("server", "server", "here", 1))
         self.warnings: list[str] = []
         self.heard: dict[str, list[tuple[int, str, int]]] = {}
         self.raised: list[Exception] = []
 
     def hub(self, *processes: str) -> LockstepHub:
-        return LockstepHub(self.bus, list(processes), TICK_S, lambda: None, self.warnings.append)
+        return LockstepHub(self.session, list(processes), TICK_S, lambda: None, self.warnings.append)
 
     def start(self, robot: str, step_of: Callable[[LockstepLink], Step] | None = None) -> None:
         """A robot that reports every tick and writes down what it hears, or steps as told."""
@@ -98,8 +98,8 @@ class Swarm:
         self.stack.callback(thread.join)
 
     def _run(self, robot: str, step_of: Callable[[LockstepLink], Step]) -> None:
-        with Bus(BusSettings(self.endpoint)) as bus:
-            link = LockstepLink(bus, robot)
+        with Session(SessionSettings(self.endpoint)) as session:
+            link = LockstepLink(session, robot)
             run(link, step_of(link), self.raised)
 
     def _reporter(self, robot: str, link: LockstepLink) -> Step:
@@ -154,8 +154,8 @@ def test_a_repeated_tick_gets_the_same_answer_and_is_not_stepped_again(swarm: Sw
     hub.advance()
     hub.gather()
     answers: SimpleQueue[bytes] = SimpleQueue()
-    swarm.bus.on_arrival(LOCKSTEP_DONE, answers.put)
-    again = swarm.bus.sender(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
+    swarm.session.on_arrival(LOCKSTEP_DONE, answers.put)
+    again = swarm.session.publisher(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
     again.put(TICK.pack(1, 100_000_000, 100_000_000, 1))
     answer = unpack_answer(answers.get())
     assert answer.number == 1
@@ -195,10 +195,10 @@ def test_ticks_repeated_at_once_are_answered_once_more(swarm: Swarm) -> None:
     swarm.start("a", talker)
     hub = swarm.hub("a")
     answers: SimpleQueue[bytes] = SimpleQueue()
-    swarm.bus.on_arrival(LOCKSTEP_DONE, answers.put)
+    swarm.session.on_arrival(LOCKSTEP_DONE, answers.put)
     hub.start()
     hub.advance()
-    again = swarm.bus.sender(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
+    again = swarm.session.publisher(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
     for _ in range(20):
         again.put(TICK.pack(1, 100_000_000, 100_000_000, 1))
     hub.gather()
@@ -227,8 +227,8 @@ class FailingStep:
 def test_what_a_step_raises_ends_the_process_and_no_other_step_is_made(swarm: Swarm) -> None:
     step = FailingStep()
     ticks: SimpleQueue[bytes] = SimpleQueue()
-    with Bus(BusSettings(swarm.endpoint)) as bus:
-        link = LockstepLink(bus, "a")
+    with Session(SessionSettings(swarm.endpoint)) as session:
+        link = LockstepLink(session, "a")
         raised: list[Exception] = []
         process = threading.Thread(target=run, args=(link, step, raised))
         process.start()
@@ -236,7 +236,7 @@ def test_what_a_step_raises_ends_the_process_and_no_other_step_is_made(swarm: Sw
         hub.start()
         hub.advance()
         process.join()
-        bus.on_arrival(LOCKSTEP_TICK.format(process="a"), ticks.put)
+        session.on_arrival(LOCKSTEP_TICK.format(process="a"), ticks.put)
         hub.advance()
         while TICK.unpack_from(ticks.get())[0] != hub.number:
             pass
@@ -297,12 +297,12 @@ with joined(parser.parse_args(words), "robot", ["a"], 0.1) as link:
 def test_a_process_stays_present_while_it_steps(swarm: Swarm) -> None:
     process = subprocess.Popen([sys.executable, "-c", SLOW, swarm.endpoint])
     answers: list[bytes] = []
-    swarm.bus.on_arrival(LOCKSTEP_DONE, answers.append)
+    swarm.session.on_arrival(LOCKSTEP_DONE, answers.append)
     hub = swarm.hub("a")
     hub.start()
     hub.advance()
     while not any(unpack_answer(answer).number == 1 for answer in answers):
-        assert swarm.bus.alive("alive/robot/**")
+        assert swarm.session.alive("alive/robot/**")
     hub.gather()
     hub.finish()
     assert process.wait() == 0
@@ -312,7 +312,7 @@ def test_bytes_that_are_no_tick_end_the_process_with_a_clear_line(swarm: Swarm) 
     swarm.start("a")
     hub = swarm.hub("a")
     hub.start()
-    swarm.bus.sender(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY).put(b"no tick")
+    swarm.session.publisher(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY).put(b"no tick")
     swarm.stack.pop_all().close()
     assert [str(error)[:30] for error in swarm.raised] == ["a: the server sent no tick: un"]
 
@@ -320,7 +320,7 @@ def test_bytes_that_are_no_tick_end_the_process_with_a_clear_line(swarm: Swarm) 
 def test_a_process_that_never_comes_is_named(swarm: Swarm) -> None:
     swarm.start("a")
     times_s = iter(range(0, 100_000, 10))
-    hub = LockstepHub(swarm.bus, ["a", "b"], TICK_S, lambda: None, print, lambda: float(next(times_s)))
+    hub = LockstepHub(swarm.session, ["a", "b"], TICK_S, lambda: None, print, lambda: float(next(times_s)))
     with pytest.raises(RunFailedError, match="b did not start within 60 s"):
         hub.start()
     hub.finish()
@@ -331,9 +331,14 @@ def test_a_silent_process_is_warned_of_and_given_up(swarm: Swarm) -> None:
     swarm.start("a")
     times_s = iter(range(0, 100_000, 3))
     hub = LockstepHub(
-        swarm.bus, ["a", "silent"], TICK_S, lambda: None, swarm.warnings.append, lambda: float(next(times_s))
+        swarm.session,
+        ["a", "silent"],
+        TICK_S,
+        lambda: None,
+        swarm.warnings.append,
+        lambda: float(next(times_s)),
     )
-    swarm.bus.sender(LOCKSTEP_DONE, Delivery.EVERY).put(pack_answer(0, "silent"))
+    swarm.session.publisher(LOCKSTEP_DONE, Delivery.EVERY).put(pack_answer(0, "silent"))
     hub.start()
     hub.publish(topics.SERVER_EVENT, pb.Event(name="said before"))
     hub.advance()
