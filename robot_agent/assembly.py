@@ -25,7 +25,7 @@ from swarm.learning.memory import ImitationMemory
 from swarm.learning.q_table import QTable
 from swarm.learning.random import spawned_generator
 from swarm.messages.topics import Topic
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
 
 if TYPE_CHECKING:
     from robot_agent.imitation.visit import BeginVisit
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 class Assembly:
     """Makes the agents of one process for one trial."""
 
-    def __init__(self, experiment: Experiment, link: Link, trial: int) -> None:
+    def __init__(self, experiment: Experiment, node: Node, trial: int) -> None:
         self._experiment = experiment
-        self._link = link
+        self._node = node
         self._seed = experiment.run.seed
         self._trial = trial
 
@@ -45,10 +45,10 @@ class Assembly:
         settings, robot = self._experiment, self._experiment.robot_named(name)
 
         def publish(topic: Topic[Any], message: Message) -> None:
-            self._link.publish(topic, message, name)
+            self._node.publish(topic, message, name)
 
         generator = partial(self._generator, robot)
-        parts = DriverParts(settings, robot, EpuckGeometry(), self._link, generator)
+        parts = DriverParts(settings, robot, EpuckGeometry(), self._node, generator)
         driver = make_driver(parts)
         brain = self._brain(robot, publish)
         estimator = PoseEstimator(parts.geometry)
@@ -59,7 +59,7 @@ class Assembly:
             driver.body,
             estimator,
             Motion(motion, parts.geometry),
-            AgentInbox(self._link, name),
+            AgentInbox(self._node, name),
             Reporter(publish),
             settings.learning.blocked_move_s,
             settings.learning.rest_s,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from swarm.clock import NS_PER_S
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
 from tracker_bridge.backends.interface import Backend, TrackedPose
 from tracker_bridge.plausibility import Gate
 
@@ -15,10 +15,10 @@ LOST_AFTER_NS = 2 * NS_PER_S
 class Bridge:
     """Between a tracking system and the swarm. Poses of robots that the experiment does not name are left."""
 
-    def __init__(self, backend: Backend, gate: Gate, link: Link, robots: list[str]) -> None:
+    def __init__(self, backend: Backend, gate: Gate, node: Node, robots: list[str]) -> None:
         self._backend = backend
         self._gate = gate
-        self._link = link
+        self._node = node
         self._seen_ns: dict[str, int | None] = dict.fromkeys(robots)
         self._refused: dict[str, str] = {}
 
@@ -45,7 +45,7 @@ class Bridge:
         message = pb.Pose(
             x_m=pose.x_m, y_m=pose.y_m, theta_rad=pose.theta_rad, captured_t_ns=tracked.captured_t_ns
         )
-        self._link.publish(topics.POSE, message, tracked.robot)
+        self._node.publish(topics.POSE, message, tracked.robot)
 
     def _report(self, name: str, text: str) -> None:
-        self._link.publish(topics.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))
+        self._node.publish(topics.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))

@@ -28,12 +28,12 @@ def run(arguments: argparse.Namespace) -> None:
     experiment = load_experiment(arguments)
     make_backend = backend_named(experiment.tracker.backend)
     leave_on_signals()
-    with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s) as link:
-        backend = make_backend(experiment, link, arguments.trial)
+    with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s) as node:
+        backend = make_backend(experiment, node, arguments.trial)
         arena = experiment.arena
         gate = Gate(GateSettings(arena.width_m, arena.height_m))
-        bridge = Bridge(backend, gate, link, [robot.id for robot in experiment.robot])
-        link.run(bridge.step)
+        bridge = Bridge(backend, gate, node, [robot.id for robot in experiment.robot])
+        node.run(bridge.step)
 
 
 def _parser() -> OneLineParser:

@@ -34,7 +34,7 @@ def patient(settings: SessionSettings) -> SessionSettings:
     return replace(settings, lease_s=LEASE_S)
 
 
-class LockstepLink:
+class LockstepNode:
     """Steps when the hub says so, and sends everything it published in one message an exchange.
 
     Ticks are numbered and idempotent: a repeated tick gets the same answer again.

@@ -21,7 +21,7 @@ Step = Callable[[int], None]
 """What a process does at a tick, given the run's time in nanoseconds."""
 
 
-class Link(Protocol):
+class Node(Protocol):
     """The same for real time and for lockstep, so that no process knows which it is in."""
 
     keys_received: set[str]
@@ -53,7 +53,7 @@ class Sequencer:
         return number
 
 
-class LiveLink:
+class LiveNode:
     """Takes part over the network at the pace of a clock: on boards, and in simulation at a given speed."""
 
     def __init__(self, session: Session, clock: WallClock, period_s: float, epoch: int) -> None:

@@ -20,8 +20,8 @@ from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.runtime.liveliness import Presence, claim
-from swarm.runtime.lockstep import EPOCH, LockstepLink, patient
-from swarm.runtime.node import Link, LiveLink
+from swarm.runtime.lockstep import EPOCH, LockstepNode, patient
+from swarm.runtime.node import LiveNode, Node
 from swarm.runtime.zenoh_session import Session, SessionSettings
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
@@ -59,7 +59,7 @@ def load_experiment(arguments: argparse.Namespace) -> Experiment:
 
 
 @contextmanager
-def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s: float) -> Iterator[Link]:
+def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s: float) -> Iterator[Node]:
     """The link of a process that is present under its names for as long as the block runs."""
     epoch = EPOCH if arguments.lockstep else time.time_ns()
     settings = SessionSettings(arguments.connect, config=arguments.zenoh_config)
@@ -69,11 +69,11 @@ def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s:
         for name in names:
             claim(session, Presence(kind, name, socket.gethostname(), epoch))
         if arguments.lockstep:
-            yield LockstepLink(session, arguments.process)
+            yield LockstepNode(session, arguments.process)
         elif arguments.started_ns:
-            yield LiveLink(session, scaled_clock(arguments.started_ns, arguments.speed), period_s, epoch)
+            yield LiveNode(session, scaled_clock(arguments.started_ns, arguments.speed), period_s, epoch)
         else:
-            yield LiveLink(session, unix_clock(), period_s, epoch)
+            yield LiveNode(session, unix_clock(), period_s, epoch)
 
 
 def leave_on_signals() -> None:

@@ -27,7 +27,7 @@ from server.processes.cpu_affinity import available_cores, keeping_to, spread
 from server.processes.environment import socket_endpoint
 from server.processes.supervisor import ProcessSpec, Supervisor
 from swarm.runtime.liveliness import Presence, claim
-from swarm.runtime.lockstep import LockstepLink, patient
+from swarm.runtime.lockstep import LockstepNode, patient
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.benchmarks.processes import cpu_of
 
@@ -56,7 +56,7 @@ SCHEDULES = {
 def zenoh_worker(name: str, endpoint: str) -> None:
     """An agent process without agents."""
     with Session(patient(SessionSettings(endpoint))) as session:
-        LockstepLink(session, name).run(no_step)
+        LockstepNode(session, name).run(no_step)
 
 
 def no_step(t_ns: int) -> None:

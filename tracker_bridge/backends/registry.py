@@ -9,15 +9,15 @@ from swarm.config.experiment import Experiment
 from swarm.errors import UserError, nearest
 from swarm.learning.random import spawned_generator
 from swarm.messages import topics
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
 from tracker_bridge.backends.interface import Backend
 from tracker_bridge.backends.sim import SimulatedTracker
 
-MakeBackend = Callable[[Experiment, Link, int], Backend]
+MakeBackend = Callable[[Experiment, Node, int], Backend]
 
 
-def _simulated(experiment: Experiment, link: Link, trial: int) -> Backend:
-    truths = link.subscribe(topics.TRUTH)
+def _simulated(experiment: Experiment, node: Node, trial: int) -> Backend:
+    truths = node.subscribe(topics.TRUTH)
     generator = partial(spawned_generator, experiment.run.seed, "", trial, component="tracker")
     return SimulatedTracker(experiment.tracker, truths.take, lambda robot: generator(robot=robot))
 

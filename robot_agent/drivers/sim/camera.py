@@ -16,7 +16,7 @@ from swarm.clock import NS_PER_S
 from swarm.geometry import Pose, wrap_angle_rad
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
 
 BUILT_IN_MODEL = CameraModel(320, 240, math.radians(53.0), radial=(-0.08, 0.01), gamma=2.2)
 """An e-puck's camera with a field of view mid-way between the published values."""
@@ -36,13 +36,13 @@ class SimulatedRobotCamera:
         model: CameraModel,
         conditions_name: str,
         truth_at: Callable[[int], Pose],
-        link: Link,
+        node: Node,
         robot: str,
         rng: np.random.Generator,
     ) -> None:
         self._camera = SimulatedCamera(model, conditions(conditions_name), rng)
         self._truth_at = truth_at
-        self._views = link.subscribe(topics.VIEW, robot)
+        self._views = node.subscribe(topics.VIEW, robot)
         self._view: pb.View | None = None
         self._shown_ns = -1
         self._velocities: list[tuple[float, float]] = []

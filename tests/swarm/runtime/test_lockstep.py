@@ -21,7 +21,7 @@ from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery
 from swarm.runtime.liveliness import Presence, claim
-from swarm.runtime.lockstep import SENT_AT_ONCE_BYTES, LockstepLink, key_matches
+from swarm.runtime.lockstep import SENT_AT_ONCE_BYTES, LockstepNode, key_matches
 from swarm.runtime.lockstep_frames import (
     BAD_FRAME,
     TICK,
@@ -68,10 +68,10 @@ def test_no_cut_frame_is_read_as_another() -> None:
         unpack_items(b"\xff" * 100, TICK.size)
 
 
-def run(link: LockstepLink, step: Step, raised: list[Exception]) -> None:
+def run(node: LockstepNode, step: Step, raised: list[Exception]) -> None:
     """A process's main thread; what it raises is kept."""
     try:
-        link.run(step)
+        node.run(step)
     except Exception as error:
         raised.append(error)
 
@@ -91,26 +91,26 @@ class Swarm:
     def hub(self, *processes: str) -> LockstepHub:
         return LockstepHub(self.session, list(processes), TICK_S, lambda: None, self.warnings.append)
 
-    def start(self, robot: str, step_of: Callable[[LockstepLink], Step] | None = None) -> None:
+    def start(self, robot: str, step_of: Callable[[LockstepNode], Step] | None = None) -> None:
         """A robot that reports every tick and writes down what it hears, or steps as told."""
         thread = threading.Thread(target=self._run, args=(robot, step_of or partial(self._reporter, robot)))
         thread.start()
         self.stack.callback(thread.join)
 
-    def _run(self, robot: str, step_of: Callable[[LockstepLink], Step]) -> None:
+    def _run(self, robot: str, step_of: Callable[[LockstepNode], Step]) -> None:
         with Session(SessionSettings(self.endpoint)) as session:
-            link = LockstepLink(session, robot)
-            run(link, step_of(link), self.raised)
+            node = LockstepNode(session, robot)
+            run(node, step_of(node), self.raised)
 
-    def _reporter(self, robot: str, link: LockstepLink) -> Step:
+    def _reporter(self, robot: str, node: LockstepNode) -> Step:
         heard = self.heard.setdefault(robot, [])
-        moves, orders = link.subscribe(topics.MOVE), link.subscribe(topics.ORDER, robot)
+        moves, orders = node.subscribe(topics.MOVE), node.subscribe(topics.ORDER, robot)
         numbers = count(1)
 
         def step(t_ns: int) -> None:
             heard.extend((t_ns, f"move of {move.robot}", move.message.number) for move in moves.take())
             heard.extend((t_ns, "order", order.message.kind) for order in orders.take())
-            link.publish(topics.MOVE, pb.Move(number=next(numbers)), robot)
+            node.publish(topics.MOVE, pb.Move(number=next(numbers)), robot)
 
         return step
 
@@ -169,10 +169,10 @@ def test_an_answer_of_any_size_arrives(swarm: Swarm) -> None:
     """More than Zenoh's thread may send itself, and more than Zenoh's queue holds."""
     event = pb.Event(text="x" * 2 * SENT_AT_ONCE_BYTES)
 
-    def talker(link: LockstepLink) -> Step:
+    def talker(node: LockstepNode) -> Step:
         def step(t_ns: int) -> None:  # noqa: ARG001
             for _ in range(64):
-                link.publish(topics.EVENT, event, "a")
+                node.publish(topics.EVENT, event, "a")
 
         return step
 
@@ -189,8 +189,8 @@ def test_ticks_repeated_at_once_are_answered_once_more(swarm: Swarm) -> None:
     """Twenty answers, each near the most that Zenoh's thread sends itself, would fill its queue."""
     event = pb.Event(text="x" * (SENT_AT_ONCE_BYTES - 1000))
 
-    def talker(link: LockstepLink) -> Step:
-        return lambda t_ns: link.publish(topics.EVENT, event, f"a{t_ns}")
+    def talker(node: LockstepNode) -> Step:
+        return lambda t_ns: node.publish(topics.EVENT, event, f"a{t_ns}")
 
     swarm.start("a", talker)
     hub = swarm.hub("a")
@@ -228,9 +228,9 @@ def test_what_a_step_raises_ends_the_process_and_no_other_step_is_made(swarm: Sw
     step = FailingStep()
     ticks: SimpleQueue[bytes] = SimpleQueue()
     with Session(SessionSettings(swarm.endpoint)) as session:
-        link = LockstepLink(session, "a")
+        node = LockstepNode(session, "a")
         raised: list[Exception] = []
-        process = threading.Thread(target=run, args=(link, step, raised))
+        process = threading.Thread(target=run, args=(node, step, raised))
         process.start()
         hub = swarm.hub("a")
         hub.start()

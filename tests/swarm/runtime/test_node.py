@@ -7,7 +7,7 @@ from itertools import count
 from swarm.clock import unix_clock
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.runtime.node import LiveLink, Sequencer
+from swarm.runtime.node import LiveNode, Sequencer
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 
@@ -25,8 +25,8 @@ def test_a_robot_hears_its_own_messages_numbered_without_gaps() -> None:
         Session(SessionSettings(endpoint, hub=True)) as here,
         Session(SessionSettings(endpoint)) as there,
     ):
-        publisher = LiveLink(here, unix_clock(), PERIOD_S, epoch=77)
-        receiver = LiveLink(there, unix_clock(), PERIOD_S, epoch=78)
+        publisher = LiveNode(here, unix_clock(), PERIOD_S, epoch=77)
+        receiver = LiveNode(there, unix_clock(), PERIOD_S, epoch=78)
         own, everyone = receiver.subscribe(topics.ORDER, "a"), receiver.subscribe(topics.ORDER)
         orders, all_orders = [], []
         numbering = count()
@@ -52,13 +52,13 @@ def test_a_robot_hears_its_own_messages_numbered_without_gaps() -> None:
 def test_ticks_are_multiples_of_the_period() -> None:
     ticks: list[int] = []
     with Session(SessionSettings(free_endpoint(), hub=True)) as session:
-        link = LiveLink(session, unix_clock(), PERIOD_S, epoch=1)
+        node = LiveNode(session, unix_clock(), PERIOD_S, epoch=1)
 
         def step(t_ns: int) -> None:
             ticks.append(t_ns)
             if len(ticks) >= 5:
-                link.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.ENDED))
+                node.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.ENDED))
 
-        link.run(step)
+        node.run(step)
     assert all(t_ns % 10_000_000 == 0 for t_ns in ticks)
     assert sorted(set(ticks)) == ticks

@@ -15,7 +15,7 @@ from swarm.runtime.subscription import Feed
 M = TypeVar("M", bound=Message)
 
 
-class LocalLink:
+class LocalNode:
     """Everything that was published, in order, and the feeds that hear it."""
 
     def __init__(self) -> None:
