@@ -12,7 +12,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header
 from swarm.messages.topics import Topic
-from swarm.runtime.subscription import Feed
+from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Inbox, Publisher, Session
 
 M = TypeVar("M", bound=Message)
@@ -27,7 +27,7 @@ class Node(Protocol):
     keys_received: set[str]
     """Every key of which this process received a message."""
 
-    def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
+    def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
         """A feed of one robot's messages, or of all robots'."""
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
@@ -63,16 +63,16 @@ class LiveNode:
         self._epoch = epoch
         self._sequencer = Sequencer()
         self._publishers: dict[str, Publisher] = {}
-        self._inboxes: list[tuple[Inbox, Feed[Any]]] = []
+        self._inboxes: list[tuple[Inbox, Subscription[Any]]] = []
         self.keys_received: set[str] = set()
         self._run_states = self.subscribe(topics.RUN_STATE)
 
-    def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
+    def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
         """A feed filled at every tick; `*` in a key keeps every message, since it holds many keys."""
-        feed = Feed(topic)
+        subscription = Subscription(topic)
         inbox = self._session.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
-        self._inboxes.append((inbox, feed))
-        return feed
+        self._inboxes.append((inbox, subscription))
+        return subscription
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         key = topic.key(robot)
@@ -89,7 +89,7 @@ class LiveNode:
                 return
 
     def _take_in(self) -> None:
-        for inbox, feed in self._inboxes:
+        for inbox, subscription in self._inboxes:
             for sample in inbox.poll():
                 self.keys_received.add(sample.key)
-                feed.put(sample.key, Header.unpack(sample.attachment), sample.payload)
+                subscription.put(sample.key, Header.unpack(sample.attachment), sample.payload)
