@@ -17,7 +17,7 @@ from robot_agent.navigation.motion import Motion, MotionSettings
 from robot_agent.navigation.pose_estimator import PoseAt, PoseEstimator
 from robot_agent.policies.expert import Expert
 from robot_agent.policies.learner import Learner
-from robot_agent.policies.policy import Brain, Publish
+from robot_agent.policies.policy import Policy, Publish
 from robot_agent.reports import Reporter
 from swarm.config.experiment import Experiment, RobotSettings, Role
 from swarm.learning.controller import Controller
@@ -50,12 +50,12 @@ class Assembly:
         generator = partial(self._generator, robot)
         parts = DriverParts(settings, robot, EpuckGeometry(), self._node, generator)
         driver = make_driver(parts)
-        brain = self._brain(robot, publish)
+        policy = self._policy(robot, publish)
         estimator = PoseEstimator(parts.geometry)
         motion = MotionSettings(period_s=settings.simulation.tick_s)
         return Agent(
             settings.compartment(robot),
-            brain,
+            policy,
             driver.body,
             estimator,
             Motion(motion, parts.geometry),
@@ -63,10 +63,10 @@ class Assembly:
             Reporter(publish),
             settings.learning.blocked_move_s,
             settings.learning.rest_s,
-            _visits(parts, driver, brain, estimator.pose, publish),
+            _visits(parts, driver, policy, estimator.pose, publish),
         )
 
-    def _brain(self, robot: RobotSettings, publish: Publish) -> Brain:
+    def _policy(self, robot: RobotSettings, publish: Publish) -> Policy:
         grid = self._experiment.compartment(robot).grid
         if robot.role is Role.EXPERT:
             return Expert(grid, publish)
@@ -93,11 +93,11 @@ class Assembly:
 
 
 def _visits(
-    parts: DriverParts, driver: Driver, brain: Brain, pose_at: PoseAt, publish: Publish
+    parts: DriverParts, driver: Driver, policy: Policy, pose_at: PoseAt, publish: Publish
 ) -> BeginVisit | None:
     """Only a robot that watches loads what it takes to see."""
-    if not parts.robot.watches or not isinstance(brain, Learner):
+    if not parts.robot.watches or not isinstance(policy, Learner):
         return None
     from robot_agent.imitation.assembly import visits_of
 
-    return visits_of(parts, driver, brain, pose_at, publish)
+    return visits_of(parts, driver, policy, pose_at, publish)
