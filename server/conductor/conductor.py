@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from server.conductor.camera_views import World
-from server.conductor.carrier import Hand, Publish
+from server.conductor.carrier import Carrier, Publish
 from server.conductor.copy_errors import CopyErrors
 from server.conductor.visits import Visits
 from server.hubs.hub import Batch
@@ -22,7 +22,7 @@ STUCK_AFTER_NS = 600 * NS_PER_S
 class Conductor:
     """Follows a trial from what is on the wire, and speaks to the robots by the same wire."""
 
-    def __init__(self, experiment: Experiment, trial: int, publish: Publish, hand: Hand) -> None:
+    def __init__(self, experiment: Experiment, trial: int, publish: Publish, carrier: Carrier) -> None:
         self._experiment = experiment
         self._trial = trial
         self._publish = publish
@@ -36,7 +36,7 @@ class Conductor:
         self._subscriptions = Subscriptions(heard)
         self._feeds_while_watching = Subscriptions((*heard, self._truths))
         self._goal = Grid(experiment.arena.columns, experiment.arena.rows).goal
-        self._visits = Visits(experiment, publish, hand)
+        self._visits = Visits(experiment, publish, carrier)
         self._world = World(experiment, publish)
         watched_by = {robot.id: robot.watches for robot in experiment.learners if robot.watches}
         self._copy_errors = CopyErrors(watched_by, publish)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from server.conductor.carrier import Hand, Operator, SimulatedHand
+from server.conductor.carrier import Carrier, Operator, SimulatedCarrier
 from server.hubs.hub import Hub
 from server.hubs.live import LiveHub
 from server.hubs.lockstep import LockstepHub
@@ -33,7 +33,7 @@ class Stage:
     """Where the messages come together, who carries robots, and how often the log is flushed."""
 
     hub: Hub
-    hand: Hand
+    carrier: Carrier
     batches_between_flushes: int
     waits_for_people: bool = False
 
@@ -60,7 +60,7 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
             claim(session, _presence())
             with Supervisor(specs, output, spread(len(specs), cores)) as supervisor:
                 hub, flush_every = _hub(experiment, session, pace, specs, supervisor.check, warn)
-                yield Stage(hub, SimulatedHand(hub.publish), flush_every)
+                yield Stage(hub, SimulatedCarrier(hub.publish), flush_every)
 
     return stage
 
