@@ -57,7 +57,7 @@ class WireSample:
 class Inbox:
     """Samples of one subscription, polled by the main loop."""
 
-    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.WireSample]]) -> None:
+    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
         self._subscriber = subscriber
 
     def poll(self) -> list[WireSample]:
@@ -145,7 +145,7 @@ class Session:
         """
         known: set[int] = set()
 
-        def call(sample: zenoh.WireSample) -> None:
+        def call(sample: zenoh.Sample) -> None:
             thread = threading.get_ident()
             if thread not in known:
                 known.add(thread)
@@ -174,7 +174,7 @@ def _keep_python_state() -> None:
     ctypes.pythonapi.PyGILState_Ensure()
 
 
-def _sample(sample: zenoh.WireSample) -> WireSample:
+def _sample(sample: zenoh.Sample) -> WireSample:
     attachment = sample.attachment
     return WireSample(
         str(sample.key_expr), bytes(sample.payload), bytes(attachment) if attachment is not None else b""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize, special
 
-from swarm.statistics.samples import WireSample, paired_differences, refuse_zero_variance
+from swarm.statistics.samples import Sample, paired_differences, refuse_zero_variance
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class EffectSize:
     pairs: int
 
 
-def paired_effect_size(first: WireSample, second: WireSample, level: float = 0.95) -> EffectSize:
+def paired_effect_size(first: Sample, second: Sample, level: float = 0.95) -> EffectSize:
     """Of `first` minus `second`; PairingError if these are no pairs or never vary.
 
     The interval of d_z holds the values whose noncentral t distribution does not reject the t seen.

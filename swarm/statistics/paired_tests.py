@@ -11,7 +11,7 @@ from swarm.statistics.samples import (
     BoolArray,
     Curves,
     FloatArray,
-    WireSample,
+    Sample,
     paired_differences,
     refuse_zero_variance,
 )
@@ -34,7 +34,7 @@ class PointwiseTest:
     p: FloatArray
 
 
-def paired_t_test(first: WireSample, second: WireSample) -> TTest:
+def paired_t_test(first: Sample, second: Sample) -> TTest:
     """Is the mean of `first` minus `second` 0? PairingError if that cannot be asked of these samples."""
     differences = paired_differences(first, second)
     refuse_zero_variance(differences.name, differences.values)

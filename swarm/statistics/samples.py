@@ -16,7 +16,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class WireSample:
+class Sample:
     """One number of each replicate: `values` (replicates,); `replicates` names each row's seed and run."""
 
     name: str
@@ -71,18 +71,18 @@ def _check_rows(name: str, values: FloatArray, replicates: tuple[Hashable, ...],
         raise UserError(f"{name}: a value is not finite; censor or drop it before any statistics")
 
 
-def area_under_curve(curves: Curves) -> WireSample:
+def area_under_curve(curves: Curves) -> Sample:
     """The trapezoidal area of each replicate, in the curve's unit times the unit of time."""
     area = np.asarray(np.trapezoid(curves.values, curves.times, axis=1))
-    return WireSample(curves.name, area, curves.replicates)
+    return Sample(curves.name, area, curves.replicates)
 
 
-def mean_level(curves: Curves) -> WireSample:
+def mean_level(curves: Curves) -> Sample:
     """The mean over the curve's points of each replicate: the height of its area, in the curve's unit."""
-    return WireSample(curves.name, curves.values.mean(axis=1), curves.replicates)
+    return Sample(curves.name, curves.values.mean(axis=1), curves.replicates)
 
 
-Measured = TypeVar("Measured", WireSample, Curves)
+Measured = TypeVar("Measured", Sample, Curves)
 
 
 class PairingError(UserError):

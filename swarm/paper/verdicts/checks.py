@@ -21,7 +21,7 @@ from swarm.paper.verdicts.finding import Finding, Tested, Verdict
 from swarm.paper.verdicts.wording import compared, in_steps
 from swarm.statistics.effect_size import paired_effect_size
 from swarm.statistics.paired_tests import Window
-from swarm.statistics.samples import Curves, FloatArray, WireSample
+from swarm.statistics.samples import Curves, FloatArray, Sample
 from swarm.statistics.survival import CensoredTimes, median_time, restricted_mean_time
 
 
@@ -58,9 +58,9 @@ def finds_shortest_by(check: FindsShortestBy, evidence: Evidence) -> Finding:
     return Finding(compared(check), Verdict.UNDECIDED if undecided else Verdict.DOES_NOT_HOLD, why)
 
 
-def _sample(condition: Condition, evidence: Evidence) -> WireSample:
+def _sample(condition: Condition, evidence: Evidence) -> Sample:
     replicates = evidence.curves(condition).replicates
-    return WireSample(condition.name, evidence.arrivals(condition).times, replicates)
+    return Sample(condition.name, evidence.arrivals(condition).times, replicates)
 
 
 def _median(arrivals: CensoredTimes) -> str:

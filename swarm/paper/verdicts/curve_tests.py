@@ -10,7 +10,7 @@ from swarm.learning.random import spawned_generator
 from swarm.paper.verdicts.finding import Tested
 from swarm.statistics.effect_size import EffectSize, paired_effect_size
 from swarm.statistics.paired_tests import Window, max_t_test, pointwise_t_test, significant_windows
-from swarm.statistics.samples import BoolArray, Curves, FloatArray, PairingError, WireSample, mean_level
+from swarm.statistics.samples import BoolArray, Curves, FloatArray, PairingError, Sample, mean_level
 
 LEVEL = 0.05
 BRIDGED_POINTS = 5
@@ -45,7 +45,7 @@ def compare(better: Curves, worse: Curves, seed: int, in_time: bool = True) -> C
     )
 
 
-def compare_samples(smaller: WireSample, larger: WireSample, seed: int) -> Comparison:
+def compare_samples(smaller: Sample, larger: Sample, seed: int) -> Comparison:
     """Both tests of one number a run, of which `smaller` is claimed to have the smaller."""
     one, other = (
         Curves(sample.name, np.zeros(1), sample.values[:, None], sample.replicates)

@@ -15,7 +15,7 @@ from swarm.statistics.intervals import (
     weighted_iqm,
     weighted_mean,
 )
-from swarm.statistics.samples import Curves, WireSample, area_under_curve, average_of_learners, mean_level
+from swarm.statistics.samples import Curves, Sample, area_under_curve, average_of_learners, mean_level
 
 
 def random_walks(seed: int, replicates: int, points: int) -> np.ndarray:
@@ -130,7 +130,7 @@ def test_curves_can_be_cut_and_thinned() -> None:
 def test_two_learners_that_copy_each_other_are_one_replicate() -> None:
     np.testing.assert_array_equal(average_of_learners(np.array([[1, 2], [3, 6]])), [2.0, 4.0])
     with pytest.raises(UserError, match="a replicate occurs twice"):
-        WireSample("pair", np.array([1.0, 3.0]), ("run 1", "run 1"))
+        Sample("pair", np.array([1.0, 3.0]), ("run 1", "run 1"))
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from swarm.statistics.paired_tests import (
     pointwise_t_test,
     significant_windows,
 )
-from swarm.statistics.samples import Curves, PairingError, WireSample, paired_differences
+from swarm.statistics.samples import Curves, PairingError, Sample, paired_differences
 
 # Student's own sleep data (Biometrika 6, 1908): hours gained with two drugs by ten patients;
 # t = -4.0621, p = 0.002833.
@@ -34,15 +34,15 @@ def noise(seed: int, replicates: int = 20, points: int = 40) -> np.ndarray:
 
 
 def test_the_paired_t_test_of_students_sleep_data() -> None:
-    test = paired_t_test(WireSample("1", DRUG_1, PATIENTS), WireSample("2", DRUG_2, PATIENTS))
+    test = paired_t_test(Sample("1", DRUG_1, PATIENTS), Sample("2", DRUG_2, PATIENTS))
     assert test.t == pytest.approx(-4.0621, abs=5e-5)
     assert test.p == pytest.approx(0.002833, abs=5e-7)
     assert test.degrees_of_freedom == 9
 
 
 def test_pairs_are_found_by_their_seed_not_by_their_place() -> None:
-    shuffled = WireSample("2", DRUG_2[::-1].copy(), PATIENTS[::-1])
-    difference = paired_differences(WireSample("1", DRUG_1, PATIENTS), shuffled)
+    shuffled = Sample("2", DRUG_2[::-1].copy(), PATIENTS[::-1])
+    difference = paired_differences(Sample("1", DRUG_1, PATIENTS), shuffled)
     np.testing.assert_array_equal(difference.values, DRUG_1 - DRUG_2)
 
 
@@ -67,15 +67,15 @@ def test_points_without_variance_neither_stop_nor_fool_the_pointwise_test() -> N
     ("second", "why"),
     [
         (
-            WireSample("b", DRUG_2, tuple(range(1, 11))),
+            Sample("b", DRUG_2, tuple(range(1, 11))),
             "2 replicates .* are in only one of them; run both with",
         ),
-        (WireSample("b", DRUG_2[:9], PATIENTS[:9]), "1 replicates .* are in only one"),
-        (WireSample("b", DRUG_1, PATIENTS), r"every pair differs by 0 \(zero variance\)"),
+        (Sample("b", DRUG_2[:9], PATIENTS[:9]), "1 replicates .* are in only one"),
+        (Sample("b", DRUG_1, PATIENTS), r"every pair differs by 0 \(zero variance\)"),
     ],
 )
-def test_wrong_pairings_are_refused_with_a_reason(second: WireSample, why: str) -> None:
-    first = WireSample("a", DRUG_1, PATIENTS)
+def test_wrong_pairings_are_refused_with_a_reason(second: Sample, why: str) -> None:
+    first = Sample("a", DRUG_1, PATIENTS)
     with pytest.raises(PairingError, match=why):
         paired_t_test(first, second)
     with pytest.raises(PairingError, match=why):
@@ -84,7 +84,7 @@ def test_wrong_pairings_are_refused_with_a_reason(second: WireSample, why: str) 
 
 def test_one_pair_is_refused() -> None:
     with pytest.raises(PairingError, match="1 pair; at least 2 are needed"):
-        paired_t_test(WireSample("a", DRUG_1[:1], (0,)), WireSample("b", DRUG_2[:1], (0,)))
+        paired_t_test(Sample("a", DRUG_1[:1], (0,)), Sample("b", DRUG_2[:1], (0,)))
 
 
 def test_curves_that_never_differ_are_refused() -> None:
@@ -168,7 +168,7 @@ def test_a_constant_difference_is_no_special_case_for_sign_flips() -> None:
 
 
 def test_cohens_d_z_of_students_sleep_data() -> None:
-    effect = paired_effect_size(WireSample("1", DRUG_1, PATIENTS), WireSample("2", DRUG_2, PATIENTS))
+    effect = paired_effect_size(Sample("1", DRUG_1, PATIENTS), Sample("2", DRUG_2, PATIENTS))
     assert effect.mean_difference == pytest.approx(-1.58)
     assert list(effect.mean_interval) == pytest.approx([-2.4598858, -0.7001142])  # R's t.test
     assert effect.d_z == pytest.approx(-1.2845585, abs=1e-6)
