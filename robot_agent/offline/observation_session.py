@@ -23,7 +23,7 @@ from robot_agent.offline.demonstrations import (
     random_moves,
 )
 from robot_agent.vision.colour_calibration import learn_colour_table
-from robot_agent.vision.detector import PROFILES, Seer
+from robot_agent.vision.detector import PROFILES, Detector
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment, RobotSettings, Role, RunSettings, Watching
 from swarm.geometry import Grid, Move, Pose, wrap_angle_rad
@@ -93,7 +93,7 @@ class Stage:
         model = BUILT_IN_MODEL.scaled(profile.width, profile.height)
         light = SimulatedCamera(model, conditions(experiment.camera.conditions), camera_rng)
         frames = calibration_frames(light, self._skirt, CALIBRATION_RANGES_M)
-        self.seer = Seer(
+        self.detector = Detector(
             experiment.visits.profile.value, model, learn_colour_table(frames, model, self._skirt)
         )
         self.camera = SceneCamera(light, self.look)
@@ -109,7 +109,7 @@ class Stage:
         began_ns = self.settle()
         duration_s = len(demonstration.track) * self._experiment.simulation.tick_s
         pose_at = self.robot.pose_at
-        watch = Watch(self.camera, self.seer, pose_at, began_ns, duration_s, visits.frames_per_s)
+        watch = Watch(self.camera, self.detector, pose_at, began_ns, duration_s, visits.frames_per_s)
         self.run(watch, began_ns, len(demonstration.track))
         profile, cell_m = CopyProfile(visits.profile.value), self._experiment.arena.cell_m
         copied = copy_moves(watch.positions, profile, cell_m, watch.expected_frames)

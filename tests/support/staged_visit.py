@@ -87,7 +87,7 @@ class StagedVisit:
         compartment = settings.compartment(settings.robot[0])
         return Eyes(
             self.camera,
-            self.stage.seer,
+            self.stage.detector,
             self.stage.robot.pose_at,
             settings.visits,
             settings.arena.cell_m,

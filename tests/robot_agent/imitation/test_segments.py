@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 from robot_agent.imitation.demonstration import Rest
-from robot_agent.imitation.positions import Floats, Sightings
+from robot_agent.imitation.positions import Floats, Trajectory
 from robot_agent.imitation.segments import Vertex, find_vertices, from_chord, segments_between
 from robot_agent.imitation.smoothing import Smoothed
 
 CELL_M = 0.12
 
 
-def seen(xy_m: Floats) -> tuple[Sightings, Smoothed]:
+def seen(xy_m: Floats) -> tuple[Trajectory, Smoothed]:
     frames = len(xy_m)
     t_s = 0.2 * np.arange(frames, dtype=np.float64)
-    sightings = Sightings((t_s * 1e9).astype(np.int64), xy_m, np.tile(1e-4 * np.eye(2), (frames, 1, 1)))
+    trajectory = Trajectory((t_s * 1e9).astype(np.int64), xy_m, np.tile(1e-4 * np.eye(2), (frames, 1, 1)))
     velocity_m_s = np.zeros((frames, 2))
-    return sightings, Smoothed(t_s, xy_m, velocity_m_s, np.tile(1e-4 * np.eye(4), (frames, 1, 1)))
+    return trajectory, Smoothed(t_s, xy_m, velocity_m_s, np.tile(1e-4 * np.eye(4), (frames, 1, 1)))
 
 
 def line(start: tuple[float, float], end: tuple[float, float], frames: int = 8) -> Floats:

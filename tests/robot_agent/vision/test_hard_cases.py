@@ -72,7 +72,7 @@ def test_the_view_is_blocked_half_way(shown: Demonstration) -> None:
 
 def test_the_lights_are_off(shown: Demonstration) -> None:
     visit = staged(shown)
-    camera = SimulatedCamera(visit.stage.seer.model, conditions("dark"), np.random.default_rng(1))
+    camera = SimulatedCamera(visit.stage.detector.model, conditions("dark"), np.random.default_rng(1))
     visit.camera = SceneCamera(camera, visit.stage.look)
     assert "the image is dark" in nothing_learnt(visit.run())
 
