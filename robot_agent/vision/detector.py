@@ -12,7 +12,7 @@ from enum import Enum
 
 import numpy as np
 
-from robot_agent.vision.association import Gate, Place
+from robot_agent.vision.association import Association, Place
 from robot_agent.vision.blobs import Blob, blobs_at_horizon
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.colour_table import SKIRT, ColourTable
@@ -128,12 +128,12 @@ class Detector:
         self._is_skirt = (table.kinds == SKIRT).astype(np.uint8)
         self._finder = EdgeFinder(self.model, table)
         self._tolerance_px = self.profile.tolerance_px
-        self._gate = Gate()
+        self._association = Association()
         self._edge_sd_rad = self.profile.edge_sd_px / self.model.focal_px
 
     def reset(self) -> None:
         """Forget where the demonstrator was: a new observation begins."""
-        self._gate.forget()
+        self._association.forget()
 
     def look(self, frame: Frame, turned_rad: float | None = None) -> Detection | NotSeen:
         """What the frame shows of the demonstrator.
@@ -143,14 +143,14 @@ class Detector:
         the profile's.
         """
         self._check_size(frame)
-        self._gate.turn(turned_rad)
+        self._association.turn(turned_rad)
         words = frame_words(frame)
         wall_light = self._finder.wall_light(words)
         if wall_light < DARK_LIGHT:
             return NotSeen(frame.t_ns, Reason.DARK)
         answer = self._choose(frame.t_ns, self._candidates(frame.t_ns, words, wall_light))
         if isinstance(answer, Detection):
-            self._gate.keep(_place(answer))
+            self._association.keep(_place(answer))
             return answer
         return NotSeen(frame.t_ns, answer)
 
@@ -223,11 +223,11 @@ class Detector:
             return next(
                 (candidate for candidate in candidates if isinstance(candidate, Reason)), Reason.NOT_SEEN
             )
-        ranked = sorted((self._gate.strain(_place(detection)), i) for i, detection in enumerate(seen))
+        ranked = sorted((self._association.strain(_place(detection)), i) for i, detection in enumerate(seen))
         if ranked[0][0] > 1:
             return Reason.JUMPED
         possible = [item for item in ranked if item[0] <= 1]
-        if len(possible) > 1 and not self._gate.remembers(t_ns):
+        if len(possible) > 1 and not self._association.remembers(t_ns):
             return Reason.TWO_CANDIDATES
         if len(possible) > 1 and possible[0][0] > CLEARLY_NEARER * possible[1][0]:
             return Reason.TWO_CANDIDATES
