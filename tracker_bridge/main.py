@@ -15,7 +15,7 @@ from swarm.runtime.process import (
 )
 from tracker_bridge.backends.registry import backend_named
 from tracker_bridge.bridge import Bridge
-from tracker_bridge.plausibility import Gate, GateSettings
+from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
 
 def main() -> None:
@@ -31,8 +31,8 @@ def run(arguments: argparse.Namespace) -> None:
     with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s) as node:
         backend = make_backend(experiment, node, arguments.trial)
         arena = experiment.arena
-        gate = Gate(GateSettings(arena.width_m, arena.height_m))
-        bridge = Bridge(backend, gate, node, [robot.id for robot in experiment.robot])
+        plausibility = Plausibility(PlausibilitySettings(arena.width_m, arena.height_m))
+        bridge = Bridge(backend, plausibility, node, [robot.id for robot in experiment.robot])
         node.run(bridge.step)
 
 

@@ -11,7 +11,7 @@ from tracker_bridge.backends.interface import TrackedPose
 
 
 @dataclass(frozen=True)
-class GateSettings:
+class PlausibilitySettings:
     """What a robot can do at most. An e-puck makes 0.13 m/s; a hand that carries it, far more."""
 
     width_m: float
@@ -35,10 +35,10 @@ class _Track:
     repeated: int = 0
 
 
-class Gate:
+class Plausibility:
     """Judges one pose at a time, from each robot's own past."""
 
-    def __init__(self, settings: GateSettings) -> None:
+    def __init__(self, settings: PlausibilitySettings) -> None:
         self._settings = settings
         self._tracks: dict[str, _Track] = {}
 

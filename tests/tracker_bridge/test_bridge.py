@@ -10,7 +10,7 @@ from swarm.messages import topics
 from tests.support.local_node import LocalNode
 from tracker_bridge.backends.interface import TrackedPose
 from tracker_bridge.bridge import Bridge
-from tracker_bridge.plausibility import Gate, GateSettings
+from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
 TICK_NS = NS_PER_S // 10
 
@@ -29,7 +29,9 @@ class Script:
 class Rig:
     def __init__(self, robots: Sequence[str] = ("a", "b")) -> None:
         self.script, self.node = Script(), LocalNode()
-        self.bridge = Bridge(self.script, Gate(GateSettings(3.0, 3.0)), self.node, list(robots))
+        self.bridge = Bridge(
+            self.script, Plausibility(PlausibilitySettings(3.0, 3.0)), self.node, list(robots)
+        )
 
     def step(self, number: int, *places: tuple[str, float]) -> list[tuple[str, object]]:
         """What is published at a tick at which the tracker saw robots at these x."""
