@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from robot_agent.imitation.demonstration import Rest
+from robot_agent.imitation.demonstration import Stop
 from robot_agent.imitation.positions import Floats, Trajectory, chi2
 from robot_agent.imitation.smoothing import Smoothed
 from swarm.geometry import wrap_angle_rad
@@ -50,26 +50,26 @@ class Vertex:
 
 
 def find_vertices(
-    trajectory: Trajectory, smoothed: Smoothed, rests: Sequence[Rest], cell_m: float
+    trajectory: Trajectory, smoothed: Smoothed, stops: Sequence[Stop], cell_m: float
 ) -> list[Vertex]:
     """The rests, and between them the bends of drives whose stop was too short to be seen."""
-    vertices = [_vertex(trajectory, smoothed, rest) for rest in rests[:1]]
-    for before, after in pairwise(rests):
+    vertices = [_vertex(trajectory, smoothed, stop) for stop in stops[:1]]
+    for before, after in pairwise(stops):
         bends = _bends(trajectory, smoothed, before.last, after.first, BEND_CELLS * cell_m)
         vertices += [_bend_vertex(trajectory, smoothed, bend) for bend in bends]
         vertices.append(_vertex(trajectory, smoothed, after))
     return vertices
 
 
-def _vertex(trajectory: Trajectory, smoothed: Smoothed, rest: Rest) -> Vertex:
-    seen = slice(rest.first, rest.last + 1)
-    middle = (rest.first + rest.last + 1) // 2
+def _vertex(trajectory: Trajectory, smoothed: Smoothed, stop: Stop) -> Vertex:
+    seen = slice(stop.first, stop.last + 1)
+    middle = (stop.first + stop.last + 1) // 2
     frozen_m2 = FROZEN_SHARE * trajectory.covariance_m2[seen].mean(axis=0)
     return Vertex(
-        rest.place_m(smoothed),
+        stop.place_m(smoothed),
         smoothed.covariance[middle, :2, :2] + frozen_m2,
-        int(trajectory.t_ns[rest.first]),
-        int(trajectory.t_ns[rest.last]),
+        int(trajectory.t_ns[stop.first]),
+        int(trajectory.t_ns[stop.last]),
     )
 
 

@@ -209,8 +209,8 @@ def main() -> None:
     parser.add_argument("--ticks", type=int, default=200)
     arguments = parser.parse_args()
     if arguments.worker:
-        kind, *rest = arguments.worker
-        bare_worker(rest[0]) if kind == "bare" else zenoh_worker(rest[1], rest[0])
+        kind, *stop = arguments.worker
+        bare_worker(stop[0]) if kind == "bare" else zenoh_worker(stop[1], stop[0])
         sys.exit(0)
     print(json.dumps(measure(arguments.processes, arguments.rounds, arguments.ticks)))
 
