@@ -43,7 +43,7 @@ class Shown:
     track: int
 
 
-class FastRobot(ABC):
+class SurrogateRobot(ABC):
     """Moves from cell to cell in its own time, and can be watched."""
 
     def __init__(
@@ -103,7 +103,7 @@ class FastRobot(ABC):
         """Take in what came of the last choice."""
 
 
-class FastExpert(FastRobot):
+class SurrogateExpert(SurrogateRobot):
     """Follows the shortest path of a square grid for ever."""
 
     def choose(self, state: int) -> int:
@@ -116,7 +116,7 @@ class FastExpert(FastRobot):
         """An expert has nothing to learn."""
 
 
-class FastLearner(FastRobot):
+class SurrogateLearner(SurrogateRobot):
     """Algorithm 3 with eq. 7: the very same controller, memory and table as on a robot."""
 
     def __init__(
@@ -159,8 +159,8 @@ class FastLearner(FastRobot):
         self.memory.remember(ObservedPath(tuple(moves)))
 
 
-def fast_robot(
+def surrogate_robot(
     experiment: Experiment, settings: RobotSettings, durations: Durations, trial: int
-) -> FastRobot:
-    made = FastExpert if settings.role is Role.EXPERT else FastLearner
+) -> SurrogateRobot:
+    made = SurrogateExpert if settings.role is Role.EXPERT else SurrogateLearner
     return made(experiment, settings, durations, trial)

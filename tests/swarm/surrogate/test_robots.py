@@ -21,7 +21,7 @@ from swarm.messages import topics
 from swarm.messages.topics import Topic
 from swarm.surrogate.copies import CopyPair, CopyStore
 from swarm.surrogate.durations import KINDS, Durations
-from swarm.surrogate.robots import FastLearner, Shown
+from swarm.surrogate.robots import Shown, SurrogateLearner
 from swarm.surrogate.trial import RobotTrial, longest_drive, window
 from tests.support.swarm_runs import ROOT
 
@@ -34,7 +34,7 @@ def deployed(name: str, moves: int) -> Experiment:
     return Experiment.load(ROOT / "deploy" / "sim" / f"{name}.toml").changed(moves=moves)
 
 
-class Recorded(FastLearner):
+class Recorded(SurrogateLearner):
     """Keeps what it went through, so that another learner can go through the same."""
 
     def __init__(self, *arguments: Any) -> None:
@@ -66,7 +66,7 @@ def test_it_decides_and_learns_as_a_robot_does() -> None:
     assert counts == [(each.n_replicated, each.n_q_plus) for each in fast.memory.remembered]
 
 
-def robot_learner(experiment: Experiment, fast: FastLearner) -> tuple[Learner, list[int], Controller]:
+def robot_learner(experiment: Experiment, fast: SurrogateLearner) -> tuple[Learner, list[int], Controller]:
     rules, best_paths = experiment.learning, list[int]()
 
     def publish(topic: Topic[Any], message: Message) -> None:
