@@ -33,7 +33,7 @@ def row(finding: Finding) -> tuple[str, ...]:
     return (
         finding.compared,
         tested(finding.paper_test),
-        tested(finding.honest_test),
+        tested(finding.family_wise_test),
         effect(finding.effect, finding.effect_unit),
         f"{finding.verdict.value}: {finding.why}",
     )

@@ -35,12 +35,12 @@ def finds_shortest_sooner(check: FindsShortestSooner, evidence: Evidence) -> Fin
     effect = paired_effect_size(later, sooner)
     medians = [_median(evidence.arrivals(condition)) for condition in (check.sooner, check.later)]
     why = f"median {medians[0]} against {medians[1]}"
-    if found.honest.favours:
+    if found.family_wise.favours:
         verdict = Verdict.HOLDS
     else:
-        decided = evidence.enough_runs or found.honest.opposes
+        decided = evidence.enough_runs or found.family_wise.opposes
         verdict = Verdict.DOES_NOT_HOLD if decided else Verdict.UNDECIDED
-    return Finding(compared(check), verdict, why, found.paper, found.honest, effect, "steps earlier")
+    return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, "steps earlier")
 
 
 def finds_shortest_by(check: FindsShortestBy, evidence: Evidence) -> Finding:
@@ -80,7 +80,7 @@ def better(check: Better, evidence: Evidence) -> Finding:
     claimed = Window(float(check.start_step or 0), float(check.end_step or last_step))
     verdict, why = _ruling(check, found, claimed, last_step, evidence.enough_runs)
     effect = effect_between(good, bad, claimed.start, claimed.end)
-    return Finding(compared(check), verdict, why, found.paper, found.honest, effect, UNIT)
+    return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, UNIT)
 
 
 def no_difference(check: NoDifference, evidence: Evidence) -> Finding:
@@ -89,7 +89,7 @@ def no_difference(check: NoDifference, evidence: Evidence) -> Finding:
     found = compare(first, second, evidence.seed)
     verdict, why = _same_ruling(found, evidence.enough_runs)
     effect = effect_between(first, second, 0, float(first.times[-1]))
-    return Finding(compared(check), verdict, why, found.paper, found.honest, effect, UNIT)
+    return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, UNIT)
 
 
 def _ruling(check: Better, found: Comparison, claimed: Window, last_step: float, enough_runs: bool) -> Ruling:
@@ -97,25 +97,25 @@ def _ruling(check: Better, found: Comparison, claimed: Window, last_step: float,
         return Verdict.UNDECIDED, f"the runs end at {in_steps(last_step)}"
     if not found.paper.favours:
         return _not_found(found, enough_runs)
-    if not any(_overlap(window, claimed) for window in found.honest.windows):
+    if not any(_overlap(window, claimed) for window in found.family_wise.windows):
         verdict = Verdict.IN_PART if enough_runs else Verdict.UNDECIDED
         return verdict, "the paper's test finds a gain, the honest test none at the time claimed"
     missed = _missed(check, found.paper)
     if missed:
         return (Verdict.IN_PART if enough_runs else Verdict.UNDECIDED), f"better, but {missed}"
-    if check.end_step is None and _longer(found.honest.against) > _longer(found.honest.windows):
+    if check.end_step is None and _longer(found.family_wise.against) > _longer(found.family_wise.windows):
         return Verdict.IN_PART, "better at first, worse for longer"
     return Verdict.HOLDS, "found by the paper's test, confirmed by the honest one"
 
 
 def _not_found(found: Comparison, enough_runs: bool) -> Ruling:
-    if found.honest.opposes:
+    if found.family_wise.opposes:
         return Verdict.DOES_NOT_HOLD, "the opposite is significant"
     return (Verdict.DOES_NOT_HOLD if enough_runs else Verdict.UNDECIDED), "not significant"
 
 
 def _same_ruling(found: Comparison, enough_runs: bool) -> Ruling:
-    if found.honest.smallest_p <= LEVEL:
+    if found.family_wise.smallest_p <= LEVEL:
         return Verdict.DOES_NOT_HOLD, "the honest test finds a difference"
     if not enough_runs:
         return Verdict.UNDECIDED, "none was found, but so few runs would hardly show one"
@@ -147,15 +147,15 @@ def higher_ratio(check: HigherRatio, evidence: Evidence) -> Finding:
     """One path against each of the others, in one family: a "point" of the tests for each other path."""
     higher, lower = _pairs(check, evidence)
     found = compare(lower, higher, evidence.seed, in_time=False)
-    beaten = round(sum(window.duration + 1 for window in found.honest.windows))
+    beaten = round(sum(window.duration + 1 for window in found.family_wise.windows))
     others = len(check.lower)
     why = (
         f"R of {check.higher.name} {higher.values.mean():.3f}, of the others at most "
         f"{lower.values.mean(axis=0).max():.3f}; significantly above {beaten} of {others}"
     )
     effect = effect_between(lower, higher, 0, others)
-    verdict = _verdict(beaten, others, evidence.enough_runs or found.honest.smallest_p <= LEVEL)
-    return Finding(compared(check), verdict, why, found.paper, found.honest, effect, "higher")
+    verdict = _verdict(beaten, others, evidence.enough_runs or found.family_wise.smallest_p <= LEVEL)
+    return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, "higher")
 
 
 def _verdict(beaten: int, others: int, decided: bool) -> Verdict:

@@ -20,7 +20,7 @@ SHORTEST_POINTS = 3
 
 
 PAPER_TEST = "paired t-test at each point"
-HONEST_TEST = "max-T sign-flip test over all points"
+FAMILY_WISE_TEST = "max-T sign-flip test over all points"
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Comparison:
     """`better` against `worse`, of the same runs; a window is in favour where `better` is smaller."""
 
     paper: Tested
-    honest: Tested
+    family_wise: Tested
 
 
 def compare(better: Curves, worse: Curves, seed: int, in_time: bool = True) -> Comparison:
@@ -38,10 +38,10 @@ def compare(better: Curves, worse: Curves, seed: int, in_time: bool = True) -> C
     """
     pointwise = pointwise_t_test(worse, better)
     rng = spawned_generator(seed, f"{better.name} {worse.name}", 0, "claims", "sign flips")
-    honest = max_t_test(worse, better, rng)
+    family_wise = max_t_test(worse, better, rng)
     return Comparison(
         _tested(PAPER_TEST, pointwise.p, pointwise.t, better.times, in_time),
-        _tested(HONEST_TEST, honest.p, honest.direction, better.times, in_time),
+        _tested(FAMILY_WISE_TEST, family_wise.p, family_wise.direction, better.times, in_time),
     )
 
 

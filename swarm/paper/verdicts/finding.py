@@ -49,7 +49,7 @@ class Finding:
     verdict: Verdict
     why: str
     paper_test: Tested | None = None
-    honest_test: Tested | None = None
+    family_wise_test: Tested | None = None
     effect: EffectSize | None = None
     effect_unit: str = ""
 
