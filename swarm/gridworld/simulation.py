@@ -23,7 +23,7 @@ from swarm.gridworld.condition import (
     Teacher,
 )
 from swarm.gridworld.splitmix import stream_word
-from swarm.gridworld.state import Agent, BestPath, Learner, Limits, Rules, World
+from swarm.gridworld.state import AgentArrays, ArenaArrays, BestPathArrays, LearnerArrays, Limits, Rules
 from swarm.learning.memory import Approach
 from swarm.learning.q_table import ALPHA, GAMMA
 
@@ -106,7 +106,7 @@ class Simulation:
         return Trace(lengths, ratios, steps)
 
 
-def _remember(learner: Learner, moves: NDArray[np.uint8]) -> None:
+def _remember(learner: LearnerArrays, moves: NDArray[np.uint8]) -> None:
     kernels.remember(learner.agent, learner.rules, moves, 0, len(moves))
 
 
@@ -122,17 +122,19 @@ APPROACHES = {
 }
 
 
-def world(arena: Arena) -> World:
+def world(arena: Arena) -> ArenaArrays:
     """An arena as the kernels see it."""
     ends = np.uint64(arena.grid.start), np.uint64(arena.grid.goal)
-    return World(ways(arena), offsets(arena), *ends, np.array(arena.expert_path, np.uint8))
+    return ArenaArrays(ways(arena), offsets(arena), *ends, np.array(arena.expert_path, np.uint8))
 
 
-def learners(condition: Condition, seed: int, run: int) -> tuple[Learner, Learner]:
+def learners(condition: Condition, seed: int, run: int) -> tuple[LearnerArrays, LearnerArrays]:
     """The first learner, and its teacher or the other learner: both have learnt nothing yet."""
     points = (condition.point_limit, condition.point_limit if condition.learners == 2 else 0)
     one, two = (
-        Learner(_agent(condition, seed, run, name), settings, _best_path(condition, limit, seed, run, name))
+        LearnerArrays(
+            _agent(condition, seed, run, name), settings, _best_path(condition, limit, seed, run, name)
+        )
         for name, settings, limit in zip(("one", "two"), _rules(condition), points, strict=True)
     )
     return one, two
@@ -174,10 +176,10 @@ def _moves(teacher: Teacher) -> int:
     return teacher.moves
 
 
-def _agent(condition: Condition, seed: int, run: int, name: str) -> Agent:
+def _agent(condition: Condition, seed: int, run: int, name: str) -> AgentArrays:
     states, capacity = condition.arena.grid.states, condition.capacity
     moves = _moves(condition.teacher)
-    return Agent(
+    return AgentArrays(
         q=np.zeros(states * MOVES),
         best=np.zeros(states),
         greedy=np.full(states, (1 << MOVES) - 1, np.uint8),
@@ -202,9 +204,9 @@ def _agent(condition: Condition, seed: int, run: int, name: str) -> Agent:
     )
 
 
-def _best_path(condition: Condition, points: int, seed: int, run: int, name: str) -> BestPath:
+def _best_path(condition: Condition, points: int, seed: int, run: int, name: str) -> BestPathArrays:
     """Room for `points` evaluations; their random numbers are their own and disturb no learning."""
-    return BestPath(
+    return BestPathArrays(
         route=np.zeros(condition.arena.longest_path, np.uint16),
         sets=np.zeros(condition.arena.longest_path, np.uint8),
         length=np.zeros(1, np.int64),

@@ -12,7 +12,7 @@ FIXED, COMPLETION, AVERAGE_Q = 0, 1, 2
 WATCHES_NOBODY, WATCHES_EXPERT, WATCHES_OTHER = 0, 1, 2
 
 
-class World(NamedTuple):
+class ArenaArrays(NamedTuple):
     """The arena and the two ends of a run."""
 
     ways: NDArray[np.uint8]
@@ -52,7 +52,7 @@ class Limits(NamedTuple):
     pair: bool
 
 
-class Agent(NamedTuple):
+class AgentArrays(NamedTuple):
     """One agent: its table, its memory of paths, and the moves that others may have seen of it.
 
     Single numbers are arrays of one, so that the kernels can change them.
@@ -94,7 +94,7 @@ class Agent(NamedTuple):
     shown_moves: NDArray[np.int64]
 
 
-class BestPath(NamedTuple):
+class BestPathArrays(NamedTuple):
     """The last greedy path found without a random choice, and the sets that it rests on."""
 
     route: NDArray[np.uint16]
@@ -106,9 +106,9 @@ class BestPath(NamedTuple):
     """What was found so far (points,)"""
 
 
-class Learner(NamedTuple):
+class LearnerArrays(NamedTuple):
     """An agent, how it learns, and what was found of its best path."""
 
-    agent: Agent
+    agent: AgentArrays
     rules: Rules
-    found: BestPath
+    found: BestPathArrays

@@ -22,7 +22,7 @@ from swarm.gridworld.condition import (
     Teacher,
 )
 from swarm.gridworld.simulation import Simulation, simulate
-from swarm.gridworld.state import Agent
+from swarm.gridworld.state import AgentArrays
 from swarm.learning.memory import Approach, ObservedPath
 from tests.support.plain_gridworld import PlainAgent, PlainSimulation
 
@@ -52,7 +52,7 @@ def condition(teacher: Teacher, approach: Approach = Approach.AVERAGE_Q, **chang
     return replace(base, **changes)  # type: ignore[arg-type]
 
 
-def assert_same(agent: Agent, plain: PlainAgent) -> None:
+def assert_same(agent: AgentArrays, plain: PlainAgent) -> None:
     """Place, table, memory, replay in progress and the next random number are all the same."""
     controller = plain.controller
     assert agent.place[0] == plain.state
