@@ -15,9 +15,9 @@ from swarm.gridworld.condition import (
     AccessEachOther,
     AccessExpert,
     Condition,
-    EachOther,
-    Experienced,
-    Expert,
+    CopyEachOther,
+    CopyExperienced,
+    CopyExpert,
     GivenPaths,
     NoTeacher,
     Teacher,
@@ -63,10 +63,10 @@ class Simulation:
             case GivenPaths(paths):
                 for path in paths:
                     _remember(self.one, np.array(path.moves, np.uint8))
-            case Experienced(goal_reachings=goal_reachings):
+            case CopyExperienced(goal_reachings=goal_reachings):
                 self._train_teacher(goal_reachings)
                 kernels.copy_moves(self.world, self.one, self.two)
-            case Expert():
+            case CopyExpert():
                 kernels.copy_moves(self.world, self.one, self.two)
             case AccessExpert(moves):
                 self.two.agent.q[:] = expert_values(condition.arena, GAMMA).ravel()
@@ -90,7 +90,7 @@ class Simulation:
             steps or condition.steps or UNLIMITED,
             condition.goal_reachings or UNLIMITED,
             condition.evaluate_every,
-            pair=isinstance(condition.teacher, EachOther | AccessEachOther | Experienced),
+            pair=isinstance(condition.teacher, CopyEachOther | AccessEachOther | CopyExperienced),
         )
         return int(kernels.run(self.world, self.one, self.two, limits))
 
@@ -150,17 +150,17 @@ def _rules(condition: Condition) -> tuple[Rules, Rules]:
         beta=condition.beta,
         approach=APPROACHES[condition.approach],
         watches=state.WATCHES_NOBODY,
-        every=teacher.every if isinstance(teacher, Expert | Experienced | EachOther) else 1,
+        every=teacher.every if isinstance(teacher, CopyExpert | CopyExperienced | CopyEachOther) else 1,
         moves=_moves(teacher),
         accesses=isinstance(teacher, AccessExpert | AccessEachOther),
         seen=False,
     )
     match teacher:
-        case Expert():
+        case CopyExpert():
             return rules._replace(watches=state.WATCHES_EXPERT), rules
-        case Experienced():
+        case CopyExperienced():
             return rules._replace(watches=state.WATCHES_OTHER), rules._replace(seen=True)
-        case EachOther():
+        case CopyEachOther():
             both = rules._replace(watches=state.WATCHES_OTHER, seen=True)
             return both, both
     return rules, rules

@@ -14,9 +14,9 @@ from swarm.gridworld.condition import (
     AccessEachOther,
     AccessExpert,
     Condition,
-    EachOther,
-    Experienced,
-    Expert,
+    CopyEachOther,
+    CopyExperienced,
+    CopyExpert,
     GivenPaths,
     NoTeacher,
     Teacher,
@@ -36,10 +36,10 @@ TEACHERS: dict[str, Teacher] = {
     "away from it": ALONG,
     "eight paths": EIGHT,
     "a path of one move": MIXED,
-    "expert": Expert(moves=4, every=3),
-    "experienced": Experienced(moves=4, every=3, goal_reachings=20),
-    "each other": EachOther(moves=4, every=3),
-    "more moves than a run has": EachOther(moves=30, every=2),
+    "expert": CopyExpert(moves=4, every=3),
+    "experienced": CopyExperienced(moves=4, every=3, goal_reachings=20),
+    "each other": CopyEachOther(moves=4, every=3),
+    "more moves than a run has": CopyEachOther(moves=30, every=2),
     "access to the expert": AccessExpert(moves=6),
     "access to each other": AccessEachOther(moves=6),
 }
@@ -98,7 +98,7 @@ def test_every_decision_is_the_same(teacher: Teacher) -> None:
 
 
 def test_memory_forgets_as_the_plain_one_does() -> None:
-    case = condition(EachOther(moves=4, every=1), capacity=3)
+    case = condition(CopyEachOther(moves=4, every=1), capacity=3)
     plain, compiled = PlainSimulation(case, 5, 0), Simulation(case, 5, 0)
     for _ in range(4_000):
         plain.step()
@@ -137,7 +137,7 @@ def test_evaluation_does_not_disturb_learning() -> None:
 
 
 def test_same_seed_gives_the_same_trace_on_any_thread() -> None:
-    case = condition(EachOther(moves=4, every=3))
+    case = condition(CopyEachOther(moves=4, every=3))
     with ThreadPoolExecutor(2) as pool:
         traces = list(pool.map(lambda run: simulate(case, 9, run), [0, 1, 0]))
     assert np.array_equal(traces[0].best_path_length, traces[2].best_path_length)
@@ -147,7 +147,7 @@ def test_same_seed_gives_the_same_trace_on_any_thread() -> None:
 
 def test_conditions_of_a_run_are_a_pair_until_the_first_copy() -> None:
     alone = simulate(condition(NoTeacher(), evaluate_every=1, points=60), 4, 0)
-    pair = simulate(condition(EachOther(moves=4, every=1_000_000), evaluate_every=1, points=60), 4, 0)
+    pair = simulate(condition(CopyEachOther(moves=4, every=1_000_000), evaluate_every=1, points=60), 4, 0)
     assert np.array_equal(alone.best_path_length[0], pair.best_path_length[0])
 
 
