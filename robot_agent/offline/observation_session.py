@@ -12,7 +12,7 @@ from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry
 from robot_agent.drivers.sim.camera import BUILT_IN_MODEL, CALIBRATION_RANGES_M
 from robot_agent.drivers.sim.rendering.camera import SceneCamera, SimulatedCamera, calibration_frames
 from robot_agent.drivers.sim.rendering.conditions import conditions
-from robot_agent.drivers.sim.rendering.scene import Body, Rectangle, Scene
+from robot_agent.drivers.sim.rendering.scene import Rectangle, Scene, SceneRobot
 from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, copy_moves
 from robot_agent.imitation.observer import Watch
 from robot_agent.offline.demonstrations import (
@@ -123,7 +123,7 @@ class Stage:
             now = track[min(tick, len(track) - 1)]
             before = track[min(max(tick - 1, 0), len(track) - 1)]
             velocity_m_s = ((now.x_m - before.x_m) / tick_s, (now.y_m - before.y_m) / tick_s)
-            return Scene((self.room,), (Body(now, self._skirt, velocity_m_s),))
+            return Scene((self.room,), (SceneRobot(now, self._skirt, velocity_m_s),))
 
         return scene
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from robot_agent.drivers.sim.rendering.camera import SimulatedCamera, calibration_frames
 from robot_agent.drivers.sim.rendering.conditions import conditions
-from robot_agent.drivers.sim.rendering.scene import Body, Post, Rectangle, Scene
+from robot_agent.drivers.sim.rendering.scene import Post, Rectangle, Scene, SceneRobot
 from robot_agent.vision.camera_model import CameraModel, load_camera_model
 from robot_agent.vision.colour_calibration import learn_colour_table
 from robot_agent.vision.detector import PROFILES, Detection, Detector, NotSeen
@@ -104,8 +104,8 @@ def random_scene(model: CameraModel, skirt: str, rng: np.random.Generator) -> tu
         other = Pose(rng.uniform(0.06, 1.14), rng.uniform(0.06, 1.14), 0.0)
         post = Post(float(rng.uniform(0.03, 1.17)), 1.17, "orange")
         if _apart(model, own, body, (other, Pose(post.x_m, post.y_m, 0.0))):
-            others = (Body(other, "blue" if skirt != "blue" else "red"),)
-            return own, Scene(ROOMS, (Body(body, skirt, velocity), *others), (post,))
+            others = (SceneRobot(other, "blue" if skirt != "blue" else "red"),)
+            return own, Scene(ROOMS, (SceneRobot(body, skirt, velocity), *others), (post,))
 
 
 def _apart(model: CameraModel, own: Pose, body: Pose, others: tuple[Pose, ...]) -> bool:
@@ -133,7 +133,7 @@ def driving(profile: str, condition: str, skirt: str, frames: int, seed: int, tw
             own = Pose(
                 *OBSERVER, math.atan2(body.y_m - OBSERVER[1], body.x_m - OBSERVER[0]) + rng.uniform(-0.1, 0.1)
             )
-            scene = Scene(ROOMS, (Body(body, skirt),), posts)
+            scene = Scene(ROOMS, (SceneRobot(body, skirt),), posts)
             yield look_at(camera, detector, own, scene, step * FRAME_NS, 0.0)
             number += 1
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from robot_agent.drivers.sim.rendering.camera import SimulatedCamera, calibration_frames
 from robot_agent.drivers.sim.rendering.conditions import conditions
-from robot_agent.drivers.sim.rendering.scene import Body, Rectangle, Scene
+from robot_agent.drivers.sim.rendering.scene import Rectangle, Scene, SceneRobot
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.frames import Frame
 from swarm.clock import NS_PER_S
@@ -75,7 +75,7 @@ class SimulatedRobotCamera:
     def _scene(self, view: pb.View) -> Scene:
         walls = tuple(Rectangle(wall.west_m, wall.south_m, wall.east_m, wall.north_m) for wall in view.walls)
         bodies = tuple(
-            Body(Pose(body.x_m, body.y_m, body.theta_rad), body.skirt, velocity)
+            SceneRobot(Pose(body.x_m, body.y_m, body.theta_rad), body.skirt, velocity)
             for body, velocity in zip(view.bodies, self._velocities, strict=True)
         )
         return Scene(walls, bodies)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from robot_agent.drivers.sim.rendering.camera import SimulatedCamera
-from robot_agent.drivers.sim.rendering.scene import Body, Post, Rectangle, Scene
+from robot_agent.drivers.sim.rendering.scene import Post, Rectangle, Scene, SceneRobot
 from robot_agent.vision.camera_model import load_camera_model
 from robot_agent.vision.colour_table import ColourTable
 from robot_agent.vision.detector import Detection, Detector, NotSeen, Reason
@@ -43,11 +43,11 @@ def detector(pair: tuple[SimulatedCamera, Detector]) -> Detector:
     return pair[1]
 
 
-def body(range_m: float, bearing_deg: float, skirt: str = "red") -> Body:
+def body(range_m: float, bearing_deg: float, skirt: str = "red") -> SceneRobot:
     """A robot seen from the observer's camera."""
     bearing_rad = math.radians(bearing_deg)
     x_m = OBSERVER.x_m + MODEL.forward_m + range_m * math.cos(bearing_rad)
-    return Body(Pose(x_m, OBSERVER.y_m + range_m * math.sin(bearing_rad), 0.0), skirt)
+    return SceneRobot(Pose(x_m, OBSERVER.y_m + range_m * math.sin(bearing_rad), 0.0), skirt)
 
 
 def post(range_m: float, bearing_deg: float, colour: str, radius_m: float, height_m: float) -> Post:
@@ -55,8 +55,8 @@ def post(range_m: float, bearing_deg: float, colour: str, radius_m: float, heigh
     return Post(place.x_m, place.y_m, colour, radius_m, height_m)
 
 
-def frame(camera: SimulatedCamera, *things: Body | Post, t_ns: int = 0, own: Pose = OBSERVER) -> Frame:
-    bodies = tuple(thing for thing in things if isinstance(thing, Body))
+def frame(camera: SimulatedCamera, *things: SceneRobot | Post, t_ns: int = 0, own: Pose = OBSERVER) -> Frame:
+    bodies = tuple(thing for thing in things if isinstance(thing, SceneRobot))
     posts = tuple(thing for thing in things if isinstance(thing, Post))
     return camera.render(t_ns, own, Scene((ROOM,), bodies, posts))
 
