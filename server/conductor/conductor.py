@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from server.conductor.camera_views import World
+from server.conductor.camera_views import CameraViews
 from server.conductor.carrier import Carrier, Publish
 from server.conductor.copy_errors import CopyErrors
 from server.conductor.visits import Visits
@@ -37,7 +37,7 @@ class Conductor:
         self._feeds_while_watching = Subscriptions((*heard, self._truths))
         self._goal = Grid(experiment.arena.columns, experiment.arena.rows).goal
         self._visits = Visits(experiment, publish, carrier)
-        self._world = World(experiment, publish)
+        self._camera_views = CameraViews(experiment, publish)
         watched_by = {robot.id: robot.watches for robot in experiment.learners if robot.watches}
         self._copy_errors = CopyErrors(watched_by, publish)
         self._state_due_ns = 0
@@ -92,7 +92,7 @@ class Conductor:
                 self._copy_errors.visit_done(word.robot, word.message, t_ns)
         self._copy_errors.step(t_ns)
         self._visits.order_due(t_ns)
-        self._world.step(self._truths.take(), self._visits.watching)
+        self._camera_views.step(self._truths.take(), self._visits.watching)
 
     def check_progress(self, t_ns: int) -> None:
         """RunFailedError if no robot has moved for ten minutes of the run: a simulation waits for nobody."""
