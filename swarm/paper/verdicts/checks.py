@@ -15,7 +15,7 @@ from swarm.paper.claim import (
     NoDifference,
     ShortestPathMoves,
 )
-from swarm.paper.verdicts.curve_tests import LEVEL, Comparison, compare, compare_samples, effect_between, span
+from swarm.paper.verdicts.curve_tests import LEVEL, CurveTests, compare, compare_samples, effect_between, span
 from swarm.paper.verdicts.evidence import Evidence
 from swarm.paper.verdicts.finding import Finding, Tested, Verdict
 from swarm.paper.verdicts.wording import compared, in_steps
@@ -92,7 +92,7 @@ def no_difference(check: NoDifference, evidence: Evidence) -> Finding:
     return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, UNIT)
 
 
-def _ruling(check: Better, found: Comparison, claimed: Window, last_step: float, enough_runs: bool) -> Ruling:
+def _ruling(check: Better, found: CurveTests, claimed: Window, last_step: float, enough_runs: bool) -> Ruling:
     if last_step < claimed.end:
         return Verdict.UNDECIDED, f"the runs end at {in_steps(last_step)}"
     if not found.paper.favours:
@@ -108,13 +108,13 @@ def _ruling(check: Better, found: Comparison, claimed: Window, last_step: float,
     return Verdict.HOLDS, "found by the paper's test, confirmed by the honest one"
 
 
-def _not_found(found: Comparison, enough_runs: bool) -> Ruling:
+def _not_found(found: CurveTests, enough_runs: bool) -> Ruling:
     if found.family_wise.opposes:
         return Verdict.DOES_NOT_HOLD, "the opposite is significant"
     return (Verdict.DOES_NOT_HOLD if enough_runs else Verdict.UNDECIDED), "not significant"
 
 
-def _same_ruling(found: Comparison, enough_runs: bool) -> Ruling:
+def _same_ruling(found: CurveTests, enough_runs: bool) -> Ruling:
     if found.family_wise.smallest_p <= LEVEL:
         return Verdict.DOES_NOT_HOLD, "the honest test finds a difference"
     if not enough_runs:
