@@ -34,7 +34,7 @@ MOVES_KEPT = 100
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ShownMoves:
     """A move as an observer could see it."""
 
     move: Move
@@ -52,7 +52,7 @@ class SurrogateRobot(ABC):
         self.settings = settings
         self.t_s = 0.0
         self.moves = self.tracks = 0
-        self.shown: deque[Shown] = deque(maxlen=MOVES_KEPT)
+        self.shown: deque[ShownMoves] = deque(maxlen=MOVES_KEPT)
         self._experiment, self._trial = experiment, trial
         self.grid = Grid(experiment.arena.columns, experiment.arena.rows)
         self._state, self._heading = self.grid.start, HEADING_AT_THE_START
@@ -73,7 +73,7 @@ class SurrogateRobot(ABC):
         arrived = next_state == self.grid.goal
         self.learn(self._state, action, next_state, duration_s, blocked=blocked, arrived=arrived)
         if not blocked:
-            self.shown.append(Shown(Move(action), self.t_s, self.t_s + duration_s, self.tracks))
+            self.shown.append(ShownMoves(Move(action), self.t_s, self.t_s + duration_s, self.tracks))
             self._heading = action
         self.t_s += duration_s
         self.moves += 1

@@ -11,7 +11,7 @@ from swarm.config.experiment import Experiment
 from swarm.geometry import Move
 from swarm.surrogate.copies import CopyStore
 from swarm.surrogate.durations import HEADING_AT_THE_START, Durations
-from swarm.surrogate.robots import Shown, SurrogateLearner, SurrogateRobot, surrogate_robot
+from swarm.surrogate.robots import ShownMoves, SurrogateLearner, SurrogateRobot, surrogate_robot
 
 CARRIED_S = 2.5
 """To the observer's place and back, in simulation: the tracker has to confirm that the robot stands there."""
@@ -114,7 +114,7 @@ class RobotTrial:
         robot.begin_at_start(HEADING_AT_THE_START)
 
 
-def longest_drive(shown: Iterable[Shown], began_s: float, ended_s: float) -> tuple[Move, ...]:
+def longest_drive(shown: Iterable[ShownMoves], began_s: float, ended_s: float) -> tuple[Move, ...]:
     """The moves that were wholly seen between two times; of several journeys, those of the longest part."""
     parts: dict[int, list[Move]] = {}
     for move in shown:

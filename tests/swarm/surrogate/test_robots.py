@@ -21,7 +21,7 @@ from swarm.messages import topics
 from swarm.messages.topics import Topic
 from swarm.surrogate.copies import CopyPair, CopyStore
 from swarm.surrogate.durations import KINDS, Durations
-from swarm.surrogate.robots import Shown, SurrogateLearner
+from swarm.surrogate.robots import ShownMoves, SurrogateLearner
 from swarm.surrogate.trial import RobotTrial, longest_drive, window
 from tests.support.swarm_runs import ROOT
 
@@ -122,8 +122,8 @@ def test_refused_copies_are_not_remembered() -> None:
 
 
 def test_only_moves_wholly_in_view_are_seen_and_of_one_journey() -> None:
-    def shown(move: Move, began_s: float, track: int) -> Shown:
-        return Shown(move, began_s, began_s + 2.0, track)
+    def shown(move: Move, began_s: float, track: int) -> ShownMoves:
+        return ShownMoves(move, began_s, began_s + 2.0, track)
 
     seen = [shown(Move.N, 9.0, 0), shown(Move.E, 11.0, 0), shown(Move.S, 13.0, 0)]
     seen += [shown(Move.W, 36.0, 1), shown(Move.NW, 39.5, 1)]
