@@ -120,14 +120,14 @@ def _epsilon_greedy(actions: Word, rules: Rules, bits: Word, more_bits: Word) ->
 
 @_inlined
 def _explore_or_not(agent: AgentArrays, rules: Rules) -> Word:
-    actions = _U(agent.greedy[agent.place[0]])
+    actions = _U(agent.greedy[agent.state[0]])
     return _epsilon_greedy(actions, rules, _bits(agent.stream), _bits(agent.stream))
 
 
 @_inlined
-def _entered(world: ArenaArrays, place: Word, action: Word) -> Word:
+def _neighbour(world: ArenaArrays, state: Word, action: Word) -> Word:
     """`Grid.neighbour`, or the place itself if the move is blocked."""
-    return place + world.offsets[action] if (_U(world.ways[place]) >> action) & _ONE else place
+    return state + world.offsets[action] if (_U(world.ways[state]) >> action) & _ONE else state
 
 
 @_inlined
@@ -198,16 +198,16 @@ def _choose(agent: AgentArrays, other: AgentArrays, rules: Rules) -> Word:
         path = _choose_path(agent)
         if rules.beta * agent.ratios[path] <= _random(agent.stream):
             return _explore_or_not(agent, rules)
-        agent.replayed[0], agent.place_in_path[0], agent.change[0] = path, 0, 0.0
+        agent.replayed[0], agent.index[0], agent.change[0] = path, 0, 0.0
     else:
-        agent.place_in_path[0] += 1
-        last = agent.place_in_path[0] == agent.lengths[agent.replayed[0]] - 1
-    place = agent.place[0]
+        agent.index[0] += 1
+        last = agent.index[0] == agent.lengths[agent.replayed[0]] - 1
+    state = agent.state[0]
     if rules.accesses:
-        action = _greedy(_U(other.greedy[place]), agent.stream)
+        action = _greedy(_U(other.greedy[state]), agent.stream)
     else:
-        action = _U(agent.paths[agent.replayed[0], agent.place_in_path[0]])
-    if not last and not (_U(agent.greedy[place]) >> action) & _ONE:
+        action = _U(agent.paths[agent.replayed[0], agent.index[0]])
+    if not last and not (_U(agent.greedy[state]) >> action) & _ONE:
         _end(agent, rules, False)
         return _explore_or_not(agent, rules)
     return action
@@ -224,28 +224,30 @@ def _end(agent: AgentArrays, rules: Rules, completed: Truth) -> None:
 
 
 @_inlined
-def _update(agent: AgentArrays, rules: Rules, place: Word, action: Word, reward: Real, entered: Word) -> Real:
+def _update(
+    agent: AgentArrays, rules: Rules, state: Word, action: Word, reward: Real, next_state: Word
+) -> Real:
     """`QTable.update`, and the set of greedy actions with it."""
-    at = place * _MOVES + action
-    change = rules.alpha * (reward + rules.gamma * agent.best[entered] - agent.q[at])
+    at = state * _MOVES + action
+    change = rules.alpha * (reward + rules.gamma * agent.best[next_state] - agent.q[at])
     value = agent.q[at] + change
     agent.q[at] = value
-    best, actions, this = agent.best[place], _U(agent.greedy[place]), _ONE << action
+    best, actions, this = agent.best[state], _U(agent.greedy[state]), _ONE << action
     joined = actions | this if value == best else actions & ~this
     actions = this if value > best else joined
     best = max(value, best)
     if actions == 0:
-        best, actions = _scan(agent.q, place)
-    agent.best[place], agent.greedy[place] = best, actions
+        best, actions = _scan(agent.q, state)
+    agent.best[state], agent.greedy[state] = best, actions
     return change
 
 
 @_called
-def _scan(q: NDArray[np.float64], place: Word) -> tuple[Real, Word]:
+def _scan(q: NDArray[np.float64], state: Word) -> tuple[Real, Word]:
     """The best value of a state and the set of actions that have it."""
-    best, actions = q[place * _MOVES], _ONE
+    best, actions = q[state * _MOVES], _ONE
     for action in range(1, MOVES):
-        value, this = q[place * _MOVES + _U(action)], _ONE << _U(action)
+        value, this = q[state * _MOVES + _U(action)], _ONE << _U(action)
         if value > best:
             best, actions = value, this
         elif value == best:
@@ -256,8 +258,8 @@ def _scan(q: NDArray[np.float64], place: Word) -> tuple[Real, Word]:
 @_called
 def prepare(agent: AgentArrays) -> None:
     """Find the best values and greedy sets of a table that was filled from outside."""
-    for place in range(len(agent.best)):
-        agent.best[place], agent.greedy[place] = _scan(agent.q, _U(place))
+    for state in range(len(agent.best)):
+        agent.best[state], agent.greedy[state] = _scan(agent.q, _U(state))
 
 
 @_inlined
@@ -265,18 +267,18 @@ def step(world: ArenaArrays, agent: AgentArrays, other: AgentArrays, rules: Rule
     """Choose, move and learn once; whether the goal was reached, and the agent put back to the start."""
     imitates = agent.remembered[0] > 0
     action = _choose(agent, other, rules) if imitates else _explore_or_not(agent, rules)
-    place = agent.place[0]
-    entered = _entered(world, place, action)
-    arrived = entered == world.goal
-    change = _update(agent, rules, place, action, 1.0 if arrived else 0.0, entered)
+    state = agent.state[0]
+    next_state = _neighbour(world, state, action)
+    arrived = next_state == world.goal
+    change = _update(agent, rules, state, action, 1.0 if arrived else 0.0, next_state)
     if imitates and agent.replayed[0] != NO_REPLAY:
         agent.change[0] += change
-        completed = agent.place_in_path[0] == agent.lengths[agent.replayed[0]] - 1
-        if completed or arrived or entered == place:
+        completed = agent.index[0] == agent.lengths[agent.replayed[0]] - 1
+        if completed or arrived or next_state == state:
             _end(agent, rules, completed)
     if rules.seen:
         _leave_trail(agent, action, arrived)
-    agent.place[0] = world.start if arrived else entered
+    agent.state[0] = world.start if arrived else next_state
     agent.arrivals[0] += arrived
     return arrived
 
@@ -334,12 +336,12 @@ def best_path_length(world: ArenaArrays, agent: AgentArrays, found: BestPathArra
 
 @_called
 def _walk(world: ArenaArrays, agent: AgentArrays, found: BestPathArrays) -> Whole:
-    place, ties, length = world.start, False, 0
-    while place != world.goal and length < len(found.route):
-        actions = _U(agent.greedy[place])
-        found.route[length], found.sets[length] = place, actions
+    state, ties, length = world.start, False, 0
+    while state != world.goal and length < len(found.route):
+        actions = _U(agent.greedy[state])
+        found.route[length], found.sets[length] = state, actions
         ties |= _has_tie(actions)
-        place = _entered(world, place, _greedy(actions, found.stream))
+        state = _neighbour(world, state, _greedy(actions, found.stream))
         length += 1
     found.length[0] = 0 if ties else length
     return length
@@ -354,19 +356,19 @@ def _evaluate(world: ArenaArrays, learner: LearnerArrays, point: Whole) -> None:
 @_inlined
 def _practise(world: ArenaArrays, agent: AgentArrays, rules: Rules, steps: Whole, reachings: Whole) -> Whole:
     """`step` for an agent alone with an empty memory, many times, its state kept in registers."""
-    place, word = agent.place[0], agent.stream[0]
+    state, word = agent.state[0], agent.stream[0]
     taken: Whole = 0
     while taken < steps and agent.arrivals[0] < reachings:
         bits, more_bits = _mixed(word + _GOLDEN), _mixed(word + _GOLDEN + _GOLDEN)
         word += _GOLDEN + _GOLDEN
-        action = _epsilon_greedy(_U(agent.greedy[place]), rules, bits, more_bits)
-        entered = _entered(world, place, action)
-        arrived = entered == world.goal
-        _update(agent, rules, place, action, 1.0 if arrived else 0.0, entered)
-        place = world.start if arrived else entered
+        action = _epsilon_greedy(_U(agent.greedy[state]), rules, bits, more_bits)
+        next_state = _neighbour(world, state, action)
+        arrived = next_state == world.goal
+        _update(agent, rules, state, action, 1.0 if arrived else 0.0, next_state)
+        state = world.start if arrived else next_state
         agent.arrivals[0] += arrived
         taken += 1
-    agent.place[0], agent.stream[0] = place, word
+    agent.state[0], agent.stream[0] = state, word
     return taken
 
 

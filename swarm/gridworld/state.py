@@ -64,7 +64,7 @@ class AgentArrays(NamedTuple):
     """max_a Q(s, a) (states,)"""
     greedy: NDArray[np.uint8]
     """The set of actions that have that value (states,)"""
-    place: NDArray[np.uint64]
+    state: NDArray[np.uint64]
     arrivals: NDArray[np.int64]
     stream: NDArray[np.uint64]
     watching: NDArray[np.uint64]
@@ -82,7 +82,7 @@ class AgentArrays(NamedTuple):
     remembered: NDArray[np.int64]
     replayed: NDArray[np.int64]
     """The memory's place of the path being replayed, or NO_REPLAY"""
-    place_in_path: NDArray[np.int64]
+    index: NDArray[np.int64]
     change: NDArray[np.float64]
     """The sum of the replay's changes of Q values"""
     trail: NDArray[np.uint8]
