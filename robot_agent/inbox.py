@@ -14,7 +14,7 @@ CONDUCTOR_SILENT_S = 5.0
 
 
 class AgentInbox:
-    """The three feeds of one robot.
+    """The three subscriptions of one robot.
 
     A robot goes on only while it hears the run's state: after 5 s without it finishes its move and waits.
     """

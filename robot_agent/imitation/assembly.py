@@ -1,4 +1,4 @@
-"""Gives a robot that is to watch others its eyes: camera, colour table, seer.
+"""Gives a robot that is to watch others its eyes: camera, colour table, detector.
 
 Everything here is imported only by robots that watch, so that the others stay small.
 """

@@ -22,12 +22,12 @@ MOST_REPEATED_FRAMES = 4
 MOST_MISSING_FRAMES = 5
 PUSHED_M = 0.03
 VAGUE_M = 0.09
-"""Three quarters of a cell: a sighting whose range is less sure does not show whether a move was made."""
+"""Three quarters of a cell: a detection whose range is less sure does not show whether a move was made."""
 
 
 @dataclass(frozen=True, slots=True)
 class ObservedFrame:
-    """One frame: its hash, what the seer said of it, and the position that follows."""
+    """One frame: its hash, what the detector said of it, and the position that follows."""
 
     t_ns: int
     frame_hash: int

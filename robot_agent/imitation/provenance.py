@@ -1,4 +1,4 @@
-"""The ledger: every copied path carries its provenance, frame by frame, into the log."""
+"""Provenance: every copied path carries its provenance, frame by frame, into the log."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from swarm.messages import swarm_pb2 as pb
 def observation_message(
     visit: int, profile: str, watch: Watch, copied: Copy | NoCopy, window: Sequence[int]
 ) -> pb.Observation:
-    """Frames, sightings, smoothed positions, segments and moves of one visit; or why there are none."""
+    """Frames, detections, smoothed positions, segments and moves of one visit; or why there are none."""
     message = pb.Observation(
         visit=visit,
         profile=profile,

@@ -15,7 +15,7 @@ from robot_agent.imitation.smoothing import Smoothed
 from swarm.geometry import wrap_angle_rad
 
 FROZEN_SHARE = 0.5
-"""Share of a sighting's variance that stays the same while the robot stands still, so that a smoothed
+"""Share of a detection's variance that stays the same while the robot stands still, so that a smoothed
 position never becomes better than this."""
 BEND_CHI2 = 16.0
 """A drive bends where it leaves its chord by this much, ..."""

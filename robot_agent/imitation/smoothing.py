@@ -23,7 +23,7 @@ _SEEN = np.eye(2, 4)
 
 @dataclass(frozen=True)
 class Smoothed:
-    """State estimates at the times of the N sightings."""
+    """State estimates at the times of the N detections."""
 
     t_s: Floats  # [N]
     xy_m: Floats  # [N, 2]
@@ -36,7 +36,7 @@ class Smoothed:
 
 
 def smooth(trajectory: Trajectory) -> Smoothed:
-    """At least one sighting, in the order of time."""
+    """At least one detection, in the order of time."""
     t_s = trajectory.t_s
     steps = [(_transition(dt_s), _process_noise(dt_s)) for dt_s in np.diff(t_s)]
     states, covariances, predictions = _filter(trajectory, steps)
@@ -45,7 +45,7 @@ def smooth(trajectory: Trajectory) -> Smoothed:
 
 
 Step = tuple[Floats, Floats]
-"""The transition and the process noise from one sighting to the next."""
+"""The transition and the process noise from one detection to the next."""
 
 
 def _filter(trajectory: Trajectory, steps: list[Step]) -> tuple[Floats, Floats, list[Step]]:
@@ -65,7 +65,7 @@ def _filter(trajectory: Trajectory, steps: list[Step]) -> tuple[Floats, Floats, 
 
 
 def _update(state: Floats, covariance: Floats, seen_m: Floats, seen_m2: Floats) -> Step:
-    """The Kalman update, or the prediction itself if the sighting is outside the gate."""
+    """The Kalman update, or the prediction itself if the detection is outside the gate."""
     innovation = seen_m - state[:2]
     weight = _inverse(covariance[:2, :2] + seen_m2)
     if innovation @ weight @ innovation > CHI2_GATE:

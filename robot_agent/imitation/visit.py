@@ -32,7 +32,7 @@ STANDS_FOR_NS = NS_PER_S
 
 @dataclass(frozen=True)
 class Eyes:
-    """What a robot needs to watch: a camera, a seer trained on the demonstrator's skirt, and a memory."""
+    """What a robot needs to watch: a camera, a detector trained on the demonstrator's skirt, and a memory."""
 
     camera: Camera
     detector: Detector

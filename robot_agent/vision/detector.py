@@ -48,7 +48,7 @@ DARK_LIGHT = 0.03
 
 
 class Reason(Enum):
-    """Why a frame gives no sighting."""
+    """Why a frame gives no detection."""
 
     NOT_SEEN = "nothing of the skirt's colour at the horizon"
     UNLIKE = "nothing of the skirt's colour has the shape of a skirt"

@@ -198,15 +198,15 @@ def _choose(agent: AgentArrays, other: AgentArrays, rules: Rules) -> Word:
         path = _choose_path(agent)
         if rules.beta * agent.ratios[path] <= _random(agent.stream):
             return _explore_or_not(agent, rules)
-        agent.replayed[0], agent.index[0], agent.change[0] = path, 0, 0.0
+        agent.replayed[0], agent.replay_index[0], agent.change[0] = path, 0, 0.0
     else:
-        agent.index[0] += 1
-        last = agent.index[0] == agent.lengths[agent.replayed[0]] - 1
+        agent.replay_index[0] += 1
+        last = agent.replay_index[0] == agent.lengths[agent.replayed[0]] - 1
     state = agent.state[0]
     if rules.accesses:
         action = _greedy(_U(other.greedy[state]), agent.stream)
     else:
-        action = _U(agent.paths[agent.replayed[0], agent.index[0]])
+        action = _U(agent.paths[agent.replayed[0], agent.replay_index[0]])
     if not last and not (_U(agent.greedy[state]) >> action) & _ONE:
         _end(agent, rules, False)
         return _explore_or_not(agent, rules)
@@ -273,7 +273,7 @@ def step(world: ArenaArrays, agent: AgentArrays, other: AgentArrays, rules: Rule
     change = _update(agent, rules, state, action, 1.0 if arrived else 0.0, next_state)
     if imitates and agent.replayed[0] != NO_REPLAY:
         agent.change[0] += change
-        completed = agent.index[0] == agent.lengths[agent.replayed[0]] - 1
+        completed = agent.replay_index[0] == agent.lengths[agent.replayed[0]] - 1
         if completed or arrived or next_state == state:
             _end(agent, rules, completed)
     if rules.seen:

@@ -195,7 +195,7 @@ def _agent(condition: Condition, seed: int, run: int, name: str) -> AgentArrays:
         totals=np.zeros(capacity),
         remembered=np.zeros(1, np.int64),
         replayed=np.full(1, state.NO_REPLAY, np.int64),
-        index=np.zeros(1, np.int64),
+        replay_index=np.zeros(1, np.int64),
         change=np.zeros(1),
         trail=np.zeros(moves, np.uint8),
         trail_moves=np.zeros(1, np.int64),

@@ -82,7 +82,7 @@ class AgentArrays(NamedTuple):
     remembered: NDArray[np.int64]
     replayed: NDArray[np.int64]
     """The memory's place of the path being replayed, or NO_REPLAY"""
-    index: NDArray[np.int64]
+    replay_index: NDArray[np.int64]
     change: NDArray[np.float64]
     """The sum of the replay's changes of Q values"""
     trail: NDArray[np.uint8]

@@ -28,7 +28,7 @@ class Node(Protocol):
     """Every key of which this process received a message."""
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
-        """A feed of one robot's messages, or of all robots'."""
+        """A subscription of one robot's messages, or of all robots'."""
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         """Send a message under the robot's key."""
@@ -68,7 +68,7 @@ class LiveNode:
         self._run_states = self.subscribe(topics.RUN_STATE)
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
-        """A feed filled at every tick; `*` in a key keeps every message, since it holds many keys."""
+        """A subscription filled at every tick; `*` in a key keeps every message, since it holds many keys."""
         subscription = Subscription(topic)
         inbox = self._session.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
         self._inboxes.append((inbox, subscription))

@@ -60,7 +60,7 @@ def load_experiment(arguments: argparse.Namespace) -> Experiment:
 
 @contextmanager
 def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s: float) -> Iterator[Node]:
-    """The link of a process that is present under its names for as long as the block runs."""
+    """The node of a process that is present under its names for as long as the block runs."""
     epoch = EPOCH if arguments.lockstep else time.time_ns()
     settings = SessionSettings(arguments.connect, config=arguments.zenoh_config)
     if arguments.lockstep:

@@ -42,7 +42,7 @@ class Subscription(Generic[M]):
         """Why the last bad message was refused, with its key."""
 
     def put(self, key: str, header: Header | None, payload: bytes) -> None:
-        """Take in what the link received; nothing is decoded yet."""
+        """Take in what the node received; nothing is decoded yet."""
         if header is None:
             self._refuse(key, "it has no header")
             return
@@ -84,14 +84,14 @@ class Subscription(Generic[M]):
 
 
 class Subscriptions:
-    """Feeds of several topics, each of which takes in what is its own."""
+    """Subscriptions of several topics, each of which takes in what is its own."""
 
     def __init__(self, subscriptions: Iterable[Subscription[Any]]) -> None:
         self._subscriptions = {subscription.topic: subscription for subscription in subscriptions}
         self._by_key: dict[str, Subscription[Any] | None] = {}
 
     def put(self, items: Iterable[Item]) -> None:
-        """Keys that belong to no feed are passed over."""
+        """Keys that belong to no subscription are passed over."""
         for item in items:
             if item.key not in self._by_key:
                 found = topic_of(item.key)

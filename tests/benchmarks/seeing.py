@@ -48,7 +48,7 @@ class Look:
 def make_pair(
     profile: str, condition: str, skirt: str, seed: int, pixel_format: str = "rgb565"
 ) -> tuple[SimulatedCamera, Detector]:
-    """A camera and a seer whose colour table was learnt with that camera."""
+    """A camera and a detector whose colour table was learnt with that camera."""
     model = load_camera_model(CALIBRATION).scaled(PROFILES[profile].width, PROFILES[profile].height)
     rng = np.random.default_rng(seed)
     camera = SimulatedCamera(model, conditions(condition), rng, pixel_format)

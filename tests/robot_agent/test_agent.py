@@ -19,7 +19,7 @@ from tests.support.local_node import LocalNode
 from tests.support.swarm_runs import experiment_text, learners, write_experiment
 from tracker_bridge.backends.sim import SimulatedTracker
 from tracker_bridge.bridge import Bridge
-from tracker_bridge.plausibility import Association, PlausibilitySettings
+from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
 TICK_NS = NS_PER_S // 10
 
@@ -34,7 +34,7 @@ class Rig:
         self.compartment = experiment.compartment(experiment.robot[0])
         truths = self.node.subscribe(topics.TRUTH)
         tracker = SimulatedTracker(experiment.tracker, truths.take, lambda _: np.random.default_rng(1))
-        self._bridge = Bridge(tracker, Association(PlausibilitySettings(13.0, 1.3)), self.node, ["r0"])
+        self._bridge = Bridge(tracker, Plausibility(PlausibilitySettings(13.0, 1.3)), self.node, ["r0"])
 
     def run(
         self,

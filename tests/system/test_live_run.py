@@ -120,14 +120,14 @@ def test_a_killed_agent_goes_on_from_its_checkpoint(swarm: LiveSwarm) -> None:
     path = swarm.directory / "state" / "r0.json"
     saved = Checkpoint(path.parent, "r0", _run_in(path)).load()
     assert saved is not None
-    moves_saved = saved["brain"]["moves"]
+    moves_saved = saved["policy"]["moves"]
     assert moves_saved >= 4
     swarm.start_agent()
     item, move = next(
         found for found in swarm.received(topics.MOVE) if found[0].header.epoch not in first_epochs
     )
     assert move.number == moves_saved + 1, "it counts on"
-    before = saved["brain"]["q"][move.state][move.action]
+    before = saved["policy"]["q"][move.state][move.action]
     assert move.q_value - move.q_change == pytest.approx(before, abs=1e-12), "it learns on"
     assert item.header.sequence == 1, "a restart shows in the log as a new epoch that counts from 1"
 

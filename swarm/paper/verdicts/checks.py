@@ -73,7 +73,7 @@ UNIT = "moves shorter"
 
 
 def better(check: Better, evidence: Evidence) -> Finding:
-    """The paper's test has to find the claimed window, and the honest test a part of it."""
+    """The paper's test has to find the claimed window, and the family-wise test a part of it."""
     good, bad = evidence.tested(check.better), evidence.tested(check.worse)
     found = compare(good, bad, evidence.seed)
     last_step = float(good.times[-1])
@@ -84,7 +84,7 @@ def better(check: Better, evidence: Evidence) -> Finding:
 
 
 def no_difference(check: NoDifference, evidence: Evidence) -> Finding:
-    """The honest test must find nothing, with runs enough to find something."""
+    """The family-wise test must find nothing, with runs enough to find something."""
     first, second = evidence.tested(check.first), evidence.tested(check.second)
     found = compare(first, second, evidence.seed)
     verdict, why = _same_ruling(found, evidence.enough_runs)
@@ -99,13 +99,13 @@ def _ruling(check: Better, found: CurveTests, claimed: Window, last_step: float,
         return _not_found(found, enough_runs)
     if not any(_overlap(window, claimed) for window in found.family_wise.windows):
         verdict = Verdict.IN_PART if enough_runs else Verdict.UNDECIDED
-        return verdict, "the paper's test finds a gain, the honest test none at the time claimed"
+        return verdict, "the paper's test finds a gain, the family-wise test none at the time claimed"
     missed = _missed(check, found.paper)
     if missed:
         return (Verdict.IN_PART if enough_runs else Verdict.UNDECIDED), f"better, but {missed}"
     if check.end_step is None and _longer(found.family_wise.against) > _longer(found.family_wise.windows):
         return Verdict.IN_PART, "better at first, worse for longer"
-    return Verdict.HOLDS, "found by the paper's test, confirmed by the honest one"
+    return Verdict.HOLDS, "found by the paper's test, confirmed by the family-wise one"
 
 
 def _not_found(found: CurveTests, enough_runs: bool) -> Ruling:
@@ -116,11 +116,14 @@ def _not_found(found: CurveTests, enough_runs: bool) -> Ruling:
 
 def _same_ruling(found: CurveTests, enough_runs: bool) -> Ruling:
     if found.family_wise.smallest_p <= LEVEL:
-        return Verdict.DOES_NOT_HOLD, "the honest test finds a difference"
+        return Verdict.DOES_NOT_HOLD, "the family-wise test finds a difference"
     if not enough_runs:
         return Verdict.UNDECIDED, "none was found, but so few runs would hardly show one"
     if found.paper.favours or found.paper.opposes:
-        return Verdict.IN_PART, "the honest test finds none; the paper's does, at some of its many points"
+        return (
+            Verdict.IN_PART,
+            "the family-wise test finds none; the paper's does, at some of its many points",
+        )
     return Verdict.HOLDS, "neither test finds a difference"
 
 

@@ -1,4 +1,4 @@
-"""Two curves under the paper's test and the honest one, at 5 %."""
+"""Two curves under the paper's test and the family-wise one, at 5 %."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A sighting's position and covariance."""
+"""A detection's position and covariance."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robot_agent.imitation.demonstration import Place, demonstration_stops, find_stops
 from robot_agent.imitation.smoothing import Smoothed
-from tests.robot_agent.imitation.test_rests import CELL_M, EAST, NORTH, REST, STOP, way
+from tests.robot_agent.imitation.test_stops import CELL_M, EAST, NORTH, REST, STOP, way
 
 BACK = (14.0, -0.08, 0.08)
 

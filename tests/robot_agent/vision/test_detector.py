@@ -160,7 +160,7 @@ def test_the_gate_keeps_to_the_robot_that_was_seen_first(camera: SimulatedCamera
 
 
 def test_the_gate_follows_the_observers_own_turn(camera: SimulatedCamera, detector: Detector) -> None:
-    """Told of the turn, the seer expects the demonstrator elsewhere in the image."""
+    """Told of the turn, the detector expects the demonstrator elsewhere in the image."""
     turned = Pose(OBSERVER.x_m, OBSERVER.y_m, 0.25)
     for told_rad, seen in ((0.25, True), (0.0, False), (None, True)):
         detector.reset()
@@ -250,12 +250,13 @@ def test_a_board_needs_no_numba() -> None:
     program = (
         "import sys; sys.modules['numba'] = None\n"
         "import numpy as np\n"
-        "from robot_agent.vision.detector import Seer\n"
+        "from robot_agent.vision.detector import Detector\n"
         "from robot_agent.vision.colour_table import ColourTable\n"
         "from robot_agent.vision.frames import Frame\n"
         "from robot_agent.vision.camera_model import CameraModel\n"
-        "seer = Seer('best', CameraModel(320, 240, 0.9), ColourTable('red', np.ones(65536, np.uint8), 1))\n"
-        "print(seer.look(Frame(0, 320, 240, 'rgb565', b'\\xff' * 153600)).reason.name)"
+        "table = ColourTable('red', np.ones(65536, np.uint8), 1)\n"
+        "detector = Detector('best', CameraModel(320, 240, 0.9), table)\n"
+        "print(detector.look(Frame(0, 320, 240, 'rgb565', b'\\xff' * 153600)).reason.name)"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "UNLIKE"

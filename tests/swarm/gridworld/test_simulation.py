@@ -55,7 +55,7 @@ def condition(teacher: Teacher, approach: Approach = Approach.AVERAGE_Q, **chang
 def assert_same(agent: AgentArrays, plain: PlainAgent) -> None:
     """Place, table, memory, replay in progress and the next random number are all the same."""
     controller = plain.controller
-    assert agent.place[0] == plain.state
+    assert agent.state[0] == plain.state
     assert agent.arrivals[0] == plain.arrivals
     assert np.array_equal(agent.q.reshape(-1, 8), controller.q.values)
     assert agent.stream[0] == controller.rng.word  # type: ignore[attr-defined]
@@ -70,7 +70,7 @@ def assert_same(agent: AgentArrays, plain: PlainAgent) -> None:
         assert agent.replayed[0] == -1
     else:
         assert agent.change[0] == controller.replay.q_change
-        assert agent.place_in_path[0] == controller.replay.index
+        assert agent.replay_index[0] == controller.replay.index
 
 
 @pytest.mark.parametrize("approach", Approach)

@@ -246,8 +246,8 @@ def test_what_a_step_raises_ends_the_process_and_no_other_step_is_made(swarm: Sw
 
 LEAVER = """
 import os, signal, sys
-from swarm.runtime.zenoh_session import Bus, BusSettings
-from swarm.runtime.lockstep import LockstepLink
+from swarm.runtime.zenoh_session import Session, SessionSettings
+from swarm.runtime.lockstep import LockstepNode
 from swarm.runtime.process import leave_on_signals
 
 def step(t_ns):
@@ -257,9 +257,9 @@ def step(t_ns):
     print("stepped")
 
 leave_on_signals()
-with Bus(BusSettings(sys.argv[1])) as bus:
+with Session(SessionSettings(sys.argv[1])) as session:
     try:
-        LockstepLink(bus, "a").run(step)
+        LockstepNode(session, "a").run(step)
     finally:
         print("left")
 """
@@ -278,11 +278,11 @@ def test_a_process_that_is_told_to_leave_ends_its_step_first(swarm: Swarm) -> No
 
 SLOW = """
 import argparse, sys, time
-from swarm.runtime.zenoh_session import BusSettings
+from swarm.runtime.zenoh_session import SessionSettings
 from swarm.runtime.process import add_common_arguments, joined
 
 def step(t_ns):
-    end_s = time.monotonic() + 2 * BusSettings("").lease_s
+    end_s = time.monotonic() + 2 * SessionSettings("").lease_s
     while time.monotonic() < end_s:
         "Zenoh's thread gives no sign of life meanwhile."
 
