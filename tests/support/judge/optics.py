@@ -82,7 +82,8 @@ class Camera:
         """The light on the sensor: blurred, darker towards the corners."""
         blur = self.lens.blur_px
         if blur > 0:
-            radiance = cv2.GaussianBlur(radiance, (0, 0), blur, borderType=cv2.BORDER_REFLECT)
+            blurred = cv2.GaussianBlur(radiance, (0, 0), blur, borderType=cv2.BORDER_REFLECT)
+            radiance = np.asarray(blurred, np.float32)
         return radiance * self._transmission
 
     @cached_property
@@ -98,7 +99,8 @@ class Camera:
         cos, sin = math.cos(self.pitch_rad), math.sin(self.pitch_rad)
         pitch = np.array([[cos, 0, sin], [0, 1, 0], [-sin, 0, cos]])
         cos, sin = math.cos(self.roll_rad), math.sin(self.roll_rad)
-        return pitch @ np.array([[1, 0, 0], [0, cos, -sin], [0, sin, cos]])
+        rotation: Points = pitch @ np.array([[1, 0, 0], [0, cos, -sin], [0, sin, cos]])
+        return rotation
 
     def _undistortion(self, distorted: Points) -> Points:
         """The undistorted radius over the distorted one, by Newton's method."""

@@ -37,12 +37,16 @@ BALL_PINS = ((0, 0), (0, 3), (2, 1), (3, 3), (3, 0))  # a pattern without symmet
 
 
 class World(NamedTuple):
-    """A scene as arrays: the first `robot_cylinders` cylinders and all balls lie within `bound`."""
+    """A scene as arrays: the first `robot_cylinders` cylinders and all balls lie within `bound`.
+
+    `pins` holds one cylinder around all pins, or none.
+    """
 
     cylinders: Records
     boxes: Records
     balls: Records
     surfaces: Records
+    pins: Records
     robot_cylinders: int
     bound: tuple[float, float, float]
     """x, y, radius of an upright cylinder around the robot"""
@@ -85,6 +89,7 @@ def world(scene: Scene) -> World:
         np.array(boxes, BOX),
         np.array(parts.balls, BALL),
         np.array(parts.surfaces, SURFACE),
+        np.array(_pin_zone(scene), CYLINDER),
         robot_cylinders,
         (scene.robot.x_m, scene.robot.y_m, radius_m),
         _lamp(scene.lamp),
@@ -147,6 +152,13 @@ def _add_boards(parts: _Collection, scene: Scene, dark: int) -> None:
     board = parts.surface(BOARD, specular=0.1, shininess=20.0)
     for height_m in np.arange(look.skirt_top_m + BOARD_PITCH_M, look.hat_bottom_m, BOARD_PITCH_M):
         parts.cylinder(x, y, height_m, height_m + BOARD_THICKNESS_M, BOARD_RADIUS_M, board)
+
+
+def _pin_zone(scene: Scene) -> list[tuple[float, ...]]:
+    look, x, y = scene.appearance, scene.robot.x_m, scene.robot.y_m
+    top_m = look.hat_top_m + PIN_HEIGHT_M + BALL_RADIUS_M
+    zone = (x, y, look.hat_top_m, top_m, look.hat_radius_m, 0.0, 0.0, 0.0, 0.0, 0, 0)
+    return [zone] if look.pins and look.hat is not None else []
 
 
 def _add_pins(parts: _Collection, scene: Scene) -> None:

@@ -44,11 +44,16 @@ def traced(scene: Scene, observer: Pose, camera: Camera) -> Image:
     """Radiance (height, width, 3) before the lens's blur."""
     light = np.empty((camera.height, camera.width, 3), np.float32)
     numbers = np.empty((camera.height, camera.width), np.int64)
-    place, arrays = camera.pose(observer), world(scene)
-    view = (place.x_m, place.y_m, camera.height_m, math.cos(place.theta_rad), math.sin(place.theta_rad))
+    view, arrays = _view(observer, camera), world(scene)
     kernels.draw_middles(camera.rays, view, arrays, light, numbers)
     kernels.draw_edges(camera.rays, view, arrays, light, numbers)
     return light
+
+
+def _view(observer: Pose, camera: Camera) -> tuple[float, float, float, float, float]:
+    """The camera as the kernels read it."""
+    place = camera.pose(observer)
+    return place.x_m, place.y_m, camera.height_m, math.cos(place.theta_rad), math.sin(place.theta_rad)
 
 
 def truth(scene: Scene, observer: Pose, camera: Camera) -> Truth:
@@ -60,31 +65,21 @@ def truth(scene: Scene, observer: Pose, camera: Camera) -> Truth:
 
 def visible_fraction(scene: Scene, observer: Pose, camera: Camera) -> float:
     """The part of the skirt's near half, by its size in the picture, that the frame shows."""
-    seen, place, arrays = camera.pose(observer).relative(scene.robot), camera.pose(observer), world(scene)
-    patches = _near_half(scene.appearance, seen)
-    pixels = camera.project(patches - (0, 0, camera.height_m))
+    patches = _near_half(scene.appearance, camera.pose(observer).relative(scene.robot), camera.height_m)
+    pixels = camera.project(patches)
     inside = ((pixels >= 0) & (pixels < (camera.width, camera.height))).all(axis=1)
-    shown = [_is_free(place, camera.height_m, patch, arrays) for patch in patches[inside]]
-    return sum(shown) / len(patches)
+    shown: int = kernels.count_shown(patches[inside], _view(observer, camera), world(scene))
+    return shown / len(patches)
 
 
-def _near_half(look: Appearance, seen: Pose) -> Points:
+def _near_half(look: Appearance, seen: Pose, camera_height_m: float) -> Points:
     """Points on the skirt, forward, left, up of the camera, evenly spread over its outline."""
     distance_m, radius_m = math.hypot(seen.x_m, seen.y_m), look.skirt_radius_m
-    # Tangents touch the cylinder where the normal is this far from the line back to the camera.
     across = (np.arange(PATCH_COLUMNS) + 0.5) / PATCH_COLUMNS * 2 - 1
-    normal_rad = np.arcsin(across * math.sqrt(max(1 - (radius_m / distance_m) ** 2, 0.0)))
+    # Tangents touch the cylinder where its normal leans this far from the line to the camera.
+    normal_rad = np.arcsin(across * math.sqrt(1 - (radius_m / distance_m) ** 2))
     theta_rad = math.atan2(seen.y_m, seen.x_m) + math.pi + normal_rad
-    up_m = np.linspace(look.skirt_bottom_m, look.skirt_top_m, 2 * PATCH_ROWS + 1)[1::2]
+    up_m = np.linspace(look.skirt_bottom_m, look.skirt_top_m, 2 * PATCH_ROWS + 1)[1::2] - camera_height_m
     x, y = seen.x_m + radius_m * np.cos(theta_rad), seen.y_m + radius_m * np.sin(theta_rad)
     rows, columns = np.mgrid[0:PATCH_ROWS, 0:PATCH_COLUMNS]
     return np.stack([x[columns], y[columns], up_m[rows]], axis=-1).reshape(-1, 3)
-
-
-def _is_free(place: Pose, height_m: float, patch: Points, arrays: object) -> bool:
-    """Whether nothing stands between the camera and a point that it would see; the last percent is the skirt's."""
-    forward, left, up = patch
-    cos, sin = math.cos(place.theta_rad), math.sin(place.theta_rad)
-    dx, dy = cos * forward - sin * left, sin * forward + cos * left
-    distance, _, _ = kernels.nearest(place.x_m, place.y_m, height_m, dx, dy, up - height_m, arrays)
-    return bool(distance > 0.99)

@@ -41,7 +41,8 @@ class Sensor:
 
     def developed(self, light: Image, generator: np.random.Generator) -> NDArray[np.uint8]:
         """The picture (height, width, 3) in eight bits that is then packed."""
-        raw = self.converted(mosaic(light * np.float32(self.exposure) * np.float32(self.gains)), generator)
+        amplification = np.array(self.gains, np.float32) * np.float32(self.exposure)
+        raw = self.converted(mosaic(light * amplification), generator)
         linear = cv2.cvtColor(raw, cv2.COLOR_BayerRGGB2RGB)
         curve = 255 * (np.arange(ADC_MAXIMUM + 1) / ADC_MAXIMUM) ** (1 / self.gamma)
         picture: NDArray[np.uint8] = np.rint(curve).astype(np.uint8)[linear]
