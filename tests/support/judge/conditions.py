@@ -31,6 +31,7 @@ class Condition:
     roll_deg: float = 0.0
     posts: int = 0
     posts_inside: bool = False
+    floor_gloss: float = 0.0
 
     def camera(self, horizontal_fov_rad: float, height_m: float, forward_m: float) -> Camera:
         """The camera of a file with these figures, as it really sits on the robot."""
@@ -41,7 +42,8 @@ class Condition:
     def scene(self, robot: Pose, generator: np.random.Generator, side_m: float = 1.2) -> Scene:
         """A random room around the robot; the same seed gives the same room in every row (but its posts)."""
         room = (robot, self.appearance, generator, side_m)
-        return furnished_room(*room, posts=self.posts, posts_inside=self.posts_inside)
+        scene = furnished_room(*room, posts=self.posts, posts_inside=self.posts_inside)
+        return replace(scene, floor_gloss=self.floor_gloss)
 
 
 def conditions(
@@ -50,7 +52,7 @@ def conditions(
     """The catalogue by name; `appearance` gives the skirt and hat that all rows but their own start from."""
     look = replace(appearance or Appearance(), hat=BLACK)
     plain = Condition("black hat", look, sensor=Sensor(pixel_format=pixel_format))
-    rows = [plain, *_coverings(plain), *_lights(plain), *_cameras(plain), *_sizes(plain), *_posts(plain)]
+    rows = [plain, *_coverings(plain), *_lights(plain), *_cameras(plain), *_sizes(plain), *_rooms(plain)]
     rows += [_hard(plain)]
     return {row.name: row for row in rows}
 
@@ -94,9 +96,11 @@ def _sizes(plain: Condition) -> list[Condition]:
     return [replace(plain, name=f"{width}x{height}", width=width, height=height) for width, height in sizes]
 
 
-def _posts(plain: Condition) -> list[Condition]:
+def _rooms(plain: Condition) -> list[Condition]:
     posts = replace(plain, name="six posts", posts=6)
-    return [posts, replace(posts, name="six posts inside", posts_inside=True)]
+    inside = replace(posts, name="six posts inside", posts_inside=True)
+    # Waxed linoleum: half of a mirror's share, since its ripples scatter the rest.
+    return [posts, inside, replace(plain, name="glossy floor", floor_gloss=0.5)]
 
 
 def _hard(plain: Condition) -> Condition:

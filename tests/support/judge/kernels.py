@@ -27,6 +27,8 @@ STRIDE = 7  # prime to SAMPLES and near half: neighbours in x lie far apart in y
 
 # Things are numbered: cylinders from 0, then boxes, then balls; and these.
 FLOOR, BACKGROUND = -1, -2
+# The image of a thing in the floor, added to its number.
+MIRRORED = 1_000_000
 # A pixel of the zone of the pins, which are thinner than a pixel: always sampled finely.
 FINE = -3
 
@@ -201,6 +203,15 @@ def lit(p: Vector, normal: Vector, d: Vector, shininess: Real, world: Any) -> tu
 
 
 @compiled
+def floor(p: Vector, d: Vector, world: Any) -> Colour:
+    """The light of the floor's tile at a point."""
+    tiles = world.floor.shape[0] / world.floor_tile
+    red, green, blue = texel(world.floor, (p[1] * tiles) % world.floor.shape[0], p[0] * tiles)
+    light = world.lamp[4] + lit(p, (0.0, 0.0, 1.0), d, 1.0, world)[0]
+    return red * light, green * light, blue * light
+
+
+@compiled
 def radiance(o: Vector, d: Vector, world: Any) -> tuple[Whole, Real, Real, Real]:
     """What a ray meets (a number for each face of each thing) and the light that comes back along it."""
     t, number, face = nearest(o, d, world)
@@ -209,15 +220,28 @@ def radiance(o: Vector, d: Vector, world: Any) -> tuple[Whole, Real, Real, Real]
         return number, red, green, blue
     p = (o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2])
     if number == FLOOR:
-        tiles = world.floor.shape[0] / world.floor_tile
-        red, green, blue = texel(world.floor, (p[1] * tiles) % world.floor.shape[0], p[0] * tiles)
-        light = world.lamp[4] + lit(p, (0.0, 0.0, 1.0), d, 1.0, world)[0]
-        return number, red * light, green * light, blue * light
+        red, green, blue = floor(p, d, world)
+        return number, red, green, blue
     index, normal = facing(p, d, number, face, world)
     s = world.surfaces[index]
     diffuse, glint = lit(p, normal, d, s.shininess, world)
     light, shine = world.lamp[4] + diffuse, s.specular * glint
     return 3 * number + face, s.red * light + shine, s.green * light + shine, s.blue * light + shine
+
+
+@compiled
+def polished(o: Vector, d: Vector, world: Any) -> tuple[Whole, Real, Real, Real]:
+    """Radiance, the floor with its mirror image by Schlick's approximation to Fresnel's law."""
+    number, red, green, blue = radiance(o, d, world)
+    if number != FLOOR or world.floor_gloss == 0.0:
+        return number, red, green, blue
+    t = -o[2] / d[2]
+    p = (o[0] + t * d[0], o[1] + t * d[1], NEAR)
+    behind, mirror_red, mirror_green, mirror_blue = radiance(p, (d[0], d[1], -d[2]), world)
+    cosine = -d[2] / math.sqrt(dot(d, d))
+    part = world.floor_gloss * (0.04 + 0.96 * (1.0 - cosine) ** 5)  # 4 % at right angles: polymers and glass
+    red, green, blue = mixed((red, green, blue), (mirror_red, mirror_green, mirror_blue), part)
+    return MIRRORED + behind, red, green, blue
 
 
 @compiled
@@ -241,7 +265,7 @@ def draw_middles(corners: Array, view: Any, world: Any, light: Array, numbers: A
     for row in range(light.shape[0]):
         for column in range(light.shape[1]):
             d = direction(corners, row, column, 0.5, 0.5, view)
-            number, red, green, blue = radiance(o, d, world)
+            number, red, green, blue = polished(o, d, world)
             light[row, column, 0], light[row, column, 1], light[row, column, 2] = red, green, blue
             pins = len(world.pins) > 0 and cylinder(o, d, world.pins[0])[0] < FAR
             numbers[row, column] = FINE if pins else number
@@ -267,7 +291,7 @@ def draw_pixel(corners: Array, row: Whole, column: Whole, view: Any, world: Any,
     for index in range(SAMPLES):
         down, right = (STRIDE * index % SAMPLES + 0.5) / SAMPLES, (index + 0.5) / SAMPLES
         d = direction(corners, row, column, down, right, view)
-        _, red, green, blue = radiance((view[0], view[1], view[2]), d, world)
+        _, red, green, blue = polished((view[0], view[1], view[2]), d, world)
         total_red, total_green, total_blue = total_red + red, total_green + green, total_blue + blue
     light[row, column, 0] = total_red / SAMPLES
     light[row, column, 1] = total_green / SAMPLES

@@ -54,6 +54,7 @@ class World(NamedTuple):
     """x, y, z, power at one metre, ambient"""
     floor: Image
     floor_tile: float
+    floor_gloss: float
     panorama: Image
     panorama_top: float
 
@@ -95,6 +96,7 @@ def world(scene: Scene) -> World:
         _lamp(scene.lamp),
         scene.floor,
         scene.floor_tile_m,
+        scene.floor_gloss,
         scene.panorama,
         scene.panorama_top_rad,
     )

@@ -96,7 +96,8 @@ class Box:
 class Scene:
     """All that a camera can see. The robot stands at `robot`; its heading turns skirt opening and pins.
 
-    `floor` is a tile (rows, columns, 3) of side `floor_tile_m` repeated over the floor; `panorama`
+    `floor` is a tile (rows, columns, 3) of side `floor_tile_m` repeated over the floor, and
+    mirrors by Fresnel's law times `floor_gloss`, 1 for a polished one; `panorama`
     (rows, columns, 3) surrounds the room at infinity: rows from `panorama_top_rad` of elevation down to the
     horizon, columns counter-clockwise from east.
     """
@@ -109,4 +110,5 @@ class Scene:
     boxes: tuple[Box, ...] = ()
     posts: tuple[Post, ...] = ()
     floor_tile_m: float = 0.5
+    floor_gloss: float = 0.0
     panorama_top_rad: float = 0.5
