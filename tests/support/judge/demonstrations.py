@@ -52,14 +52,11 @@ def random_view(
     The robot's axis is `margin_rad` inside the field of view; a negative margin lets borders cut it.
     """
     limit_rad = camera.horizontal_fov_rad / 2 - margin_rad
-    distance_m = generator.uniform(NEAREST_M, FARTHEST_M)
     bearing_rad = generator.uniform(-limit_rad, limit_rad)
-    while True:
-        observer = _random_pose(generator)
-        seen = Pose(distance_m * math.cos(bearing_rad), distance_m * math.sin(bearing_rad), 0.0)
-        robot = camera.pose(observer).compose(replace(seen, theta_rad=generator.uniform(-math.pi, math.pi)))
-        if _is_inside(robot):
-            return observer, robot
+    place, robot = _random_line(generator, generator.uniform(NEAREST_M, FARTHEST_M))
+    heading = replace(place, theta_rad=wrap_angle_rad(place.theta_rad - bearing_rad))
+    observer = heading.compose(Pose(-camera.forward_m, 0.0, 0.0))
+    return observer, replace(robot, theta_rad=generator.uniform(-math.pi, math.pi))
 
 
 def random_demonstration(
@@ -92,9 +89,18 @@ def _random_pose(generator: np.random.Generator) -> Pose:
     return Pose(x_m, y_m, generator.uniform(-math.pi, math.pi))
 
 
-def _is_inside(pose: Pose) -> bool:
-    limit_m = COMPARTMENT.east_m - BORDER_M
-    return BORDER_M <= pose.x_m <= limit_m and BORDER_M <= pose.y_m <= limit_m
+def _random_line(generator: np.random.Generator, length_m: float) -> tuple[Pose, Pose]:
+    """Two places of the compartment that far apart, the first looking at the second."""
+    room_m = COMPARTMENT.east_m - 2 * BORDER_M
+    while True:
+        turn_rad = generator.uniform(-math.pi, math.pi)
+        line_m = length_m * np.array([math.cos(turn_rad), math.sin(turn_rad)])
+        free_m = room_m - np.abs(line_m)
+        if (free_m >= 0).all():  # a line longer than the side fits only along a diagonal
+            break
+    start_m = BORDER_M + np.maximum(-line_m, 0) + generator.uniform(0, 1, 2) * free_m
+    start = Pose(float(start_m[0]), float(start_m[1]), turn_rad)
+    return start, start.compose(Pose(length_m, 0.0, 0.0))
 
 
 def _random_path(generator: np.random.Generator, moves: int) -> tuple[tuple[Move, ...], tuple[Pose, ...]]:

@@ -35,6 +35,22 @@ def test_every_row_gives_a_whole_frame_in_which_the_skirt_shows(name: str) -> No
     assert truth(scene, observer, camera).visible_fraction > 0.9
 
 
+@pytest.mark.parametrize("forward_m", [0.0, 0.03])
+def test_views_are_spread_over_distance_and_bearing_within_the_walls(forward_m: float) -> None:
+    camera = conditions()["black hat"].camera(0.84, 0.028, forward_m)
+    generator = np.random.default_rng(2)
+    views = [random_view(generator, camera) for _ in range(400)]
+    seen = [camera.pose(observer).relative(robot) for observer, robot in views]
+    distances_m = np.array([math.hypot(place.x_m, place.y_m) for place in seen])
+    bearings_rad = np.array([math.atan2(place.y_m, place.x_m) for place in seen])
+    assert distances_m.min() > NEAREST_M
+    assert distances_m.max() < FARTHEST_M
+    assert distances_m.mean() == pytest.approx((NEAREST_M + FARTHEST_M) / 2, abs=0.05)
+    assert np.abs(bearings_rad).max() < 0.3
+    assert bearings_rad.std() == pytest.approx(0.3 / math.sqrt(3), rel=0.1)  # of an even spread
+    assert all(COMPARTMENT.state_at(pose.x_m, pose.y_m) is not None for view in views for pose in view)
+
+
 def test_rows_share_the_room_of_a_seed() -> None:
     rows = conditions()
     camera = rows["black hat"].camera(*FILE)
