@@ -7,11 +7,12 @@ import math
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console
 
-from server.processes.environment import laboratory, simulated
+from server.processes.environment import Environment, laboratory, simulated
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
@@ -34,13 +35,14 @@ def run(arguments: argparse.Namespace) -> None:
     experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
     with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
         trials: Sequence[int] = range(experiment.run.trials)
-        set_stage = simulated(experiment, arguments.speed, progress.warn)
+        environment: Environment = partial(simulated, experiment, arguments.speed, progress.warn)
         if arguments.listen:
             settings = SessionSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
             session = open_session.enter_context(Session(settings))
-            trials, set_stage = [arguments.trial], laboratory(experiment, session, progress.warn)
+            trials = [arguments.trial]
+            environment = partial(laboratory, experiment, session, progress.warn)
         directory = RunDirectory.create(arguments.out, experiment.run.name)
-        summary = Run(experiment, arguments.experiment, directory, set_stage, trials, progress).run()
+        summary = Run(experiment, arguments.experiment, directory, environment, trials, progress).run()
     if arguments.json:
         print_json(summary)
     else:
