@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import multiprocessing
+import os
 import signal
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
@@ -12,8 +13,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from swarm.errors import RunFailedError, UserError
+from swarm.interpreter import safe_path
 
 SCHEDULERS = ("processes", "dask")
+
+
+def available_cores() -> list[int]:
+    """The cores that this process may use; all of the machine where the system does not say."""
+    if hasattr(os, "sched_getaffinity"):
+        return sorted(os.sched_getaffinity(0))
+    return list(range(os.cpu_count() or 1))
 
 
 @dataclass(frozen=True)
@@ -34,7 +43,7 @@ def workers(scheduler: str, jobs: int) -> Iterator[Workers]:
             yield Workers(1, _in_this_process)
             return
         try:
-            with _processes(jobs) as pool:
+            with safe_path(), _processes(jobs) as pool:
                 yield Workers(jobs, _through(pool))
         except BrokenExecutor as error:
             raise RunFailedError(
@@ -42,7 +51,7 @@ def workers(scheduler: str, jobs: int) -> Iterator[Workers]:
                 "perhaps with fewer --jobs"
             ) from error
     else:
-        with _dask(scheduler, jobs) as dask_workers:
+        with safe_path(), _dask(scheduler, jobs) as dask_workers:
             yield dask_workers
 
 

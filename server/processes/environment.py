@@ -14,12 +14,13 @@ from server.conductor.carrier import Carrier, Operator, SimulatedCarrier
 from server.hubs.hub import Hub
 from server.hubs.live import LiveHub
 from server.hubs.lockstep import LockstepHub
-from server.processes.cpu_affinity import available_cores, keeping_to, spread
+from server.processes.cpu_affinity import keeping_to, spread
 from server.processes.run_table import Pace, run_table
 from server.processes.supervisor import ProcessSpec, Supervisor
 from server.reporter import Reporter
 from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import Experiment
+from swarm.parallel import available_cores
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import patient
 from swarm.runtime.zenoh_session import Session, SessionSettings
