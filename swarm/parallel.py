@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import multiprocessing
 import os
 import signal
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from swarm.errors import RunFailedError, UserError
+from swarm.extras import require_extra
 from swarm.interpreter import safe_path
 
 SCHEDULERS = ("processes", "dask")
@@ -92,8 +93,7 @@ def _leave_interrupts() -> None:
 
 @contextmanager
 def _dask(scheduler: str, jobs: int) -> Iterator[Workers]:
-    if importlib.util.find_spec("distributed") is None:
-        raise UserError("Dask is missing: install it with pip install 'swarm-runtime[cluster]'")
+    require_extra("cluster", "dask", "distributed")
     with _dask_client(scheduler, jobs) as client:
         count = max(1, sum(client.nthreads().values()))
         yield Workers(count, _through(client.get_executor(pure=False)))

@@ -9,8 +9,9 @@ from typing import Annotated, Any
 
 import typer
 
-from swarm.cli.output import print_json, require_extra
+from swarm.cli.output import print_json
 from swarm.cli.reproduce import Jobs, Json, Out, Runs, Scheduler, Seed, Steps, told_when_interrupted
+from swarm.extras import require_extra
 from swarm.parallel import available_cores
 
 Figures = Annotated[

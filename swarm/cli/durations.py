@@ -9,7 +9,8 @@ from typing import Annotated
 
 import typer
 
-from swarm.cli.output import print_json, require_extra
+from swarm.cli.output import print_json
+from swarm.extras import require_extra
 
 Json = Annotated[bool, typer.Option("--json", help="Print the results as one JSON object.")]
 

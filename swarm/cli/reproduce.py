@@ -9,8 +9,9 @@ from typing import Annotated, Any
 
 import typer
 
-from swarm.cli.output import print_json, require_extra
+from swarm.cli.output import print_json
 from swarm.errors import UserError
+from swarm.extras import require_extra
 from swarm.parallel import available_cores
 
 Runs = Annotated[

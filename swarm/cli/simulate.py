@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from swarm.cli.output import require_extra
+from swarm.extras import require_extra
 from swarm.interpreter import child_environment, module_command
 
 

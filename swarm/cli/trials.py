@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from swarm.cli.output import print_json, require_extra
+from swarm.cli.output import print_json
 from swarm.errors import UserError
+from swarm.extras import require_extra
 from swarm.parallel import available_cores
 
 if TYPE_CHECKING:
