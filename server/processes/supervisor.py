@@ -15,6 +15,7 @@ from swarm.interpreter import child_environment, module_command
 from swarm.parallel import available_cores
 
 LEAVE_WITHIN_S = 5.0
+"""A process leaves after its step, which takes far less; one that has not by then hangs."""
 
 
 @dataclass(frozen=True)

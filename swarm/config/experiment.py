@@ -21,6 +21,7 @@ from swarm.messages.topics import is_id
 NonNegative = Between(0)
 
 BEYOND_CORNER_M = 0.05
+"""So far in x and in y: the observer's body, of 0.035 m radius, is wholly outside the compartment."""
 
 
 class Role(Enum):
