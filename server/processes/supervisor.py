@@ -7,7 +7,6 @@ import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 
 from server.processes.cpu_affinity import keep, spread
 from swarm.errors import RunFailedError
@@ -48,12 +47,7 @@ class Supervisor:
             self._processes[spec.name] = self._started(spec, number)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None:
             self._signal(signal.SIGTERM)
         for process in self._processes.values():
