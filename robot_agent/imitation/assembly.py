@@ -13,8 +13,8 @@ from robot_agent.drivers.interfaces import Driver, DriverParts
 from robot_agent.drivers.sim.camera import BUILT_IN_MODEL, calibration_frames_of
 from robot_agent.imitation.visit import BeginVisit, Eyes, Visit
 from robot_agent.navigation.pose_estimator import PoseAt
-from robot_agent.policies.learner import Learner
-from robot_agent.policies.policy import Publish
+from robot_agent.policies.learner import LearningPolicy
+from robot_agent.reports import Reporter
 from robot_agent.vision.camera_model import CameraModel, load_camera_model
 from robot_agent.vision.colour_calibration import learn_colour_table
 from robot_agent.vision.colour_table import ColourTable, load_colour_table
@@ -24,7 +24,7 @@ from swarm.messages import swarm_pb2 as pb
 
 
 def visits_of(
-    parts: DriverParts, driver: Driver, learner: Learner, pose_at: PoseAt, publish: Publish
+    parts: DriverParts, driver: Driver, policy: LearningPolicy, pose_at: PoseAt, reporter: Reporter
 ) -> BeginVisit:
     """What makes a visit of an order, for a learner that watches the robot named in its settings."""
     experiment = parts.experiment
@@ -41,11 +41,11 @@ def visits_of(
         experiment.arena.cell_m,
         watched.centre(watched.grid.start),
         parts.generator("window"),
-        lambda path, visit: learner.remember(path, "camera", visit),
+        lambda path, visit: policy.remember(path, "camera", visit),
     )
 
     def begin(order: pb.Order) -> Visit:
-        return Visit(order, eyes, parts.geometry, publish)
+        return Visit(order, eyes, parts.geometry, reporter)
 
     return begin
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robot_agent.agent import Activity
+from robot_agent.activities import Finished
 from robot_agent.assembly import Assembly
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
@@ -135,7 +135,7 @@ def test_it_finishes_after_its_moves(tmp_path: Path) -> None:
     rig = Rig(tmp_path, moves=7)
     published = rig.run(60)
     assert [move.number for move in of(published, "move")] == list(range(1, 8))
-    assert rig.agent.activity is Activity.FINISHED
+    assert isinstance(rig.agent.activity, Finished)
     assert stands(published)
 
 
