@@ -18,7 +18,7 @@ from robot_agent.reports import Reporter
 from robot_agent.vision.camera_model import CameraModel, load_camera_model
 from robot_agent.vision.colour_calibration import learn_colour_table
 from robot_agent.vision.colour_table import ColourTable, load_colour_table
-from robot_agent.vision.detector import PROFILES, Detector
+from robot_agent.vision.detector import MEASUREMENTS, Detector
 from swarm.config.experiment import Experiment
 from swarm.messages import swarm_pb2 as pb
 
@@ -29,13 +29,13 @@ def visits_of(
     """What makes a visit of an order, for a learner that watches the robot named in its settings."""
     experiment = parts.experiment
     settings, demonstrator = experiment.visits, experiment.robot_named(parts.robot.watches)
-    profile = PROFILES[settings.profile.value]
+    profile = MEASUREMENTS[settings.profile]
     model = _model(experiment).scaled(profile.width, profile.height)
     table = _colours(experiment, model, demonstrator.skirt, parts.generator("calibration"))
     watched = experiment.compartment(demonstrator)
     eyes = Eyes(
         driver.camera(model),
-        Detector(settings.profile.value, model, table),
+        Detector(settings.profile, model, table),
         pose_at,
         settings,
         experiment.arena.cell_m,

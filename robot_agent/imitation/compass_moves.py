@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_agent.imitation.positions import Floats
 from robot_agent.imitation.segments import Vertex
+from robot_agent.imitation.trajectory import Floats
 from swarm.geometry import MOVES, Move
 
 MOST_CELLS = 9

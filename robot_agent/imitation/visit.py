@@ -9,7 +9,7 @@ import numpy as np
 
 from robot_agent.drivers.interfaces import Camera
 from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry, WheelSpeeds
-from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, choose_window, copy_moves
+from robot_agent.imitation.copying import Copy, NoCopy, choose_window, copy_moves
 from robot_agent.imitation.observer import Watch
 from robot_agent.imitation.provenance import observation_message
 from robot_agent.navigation.pose_estimator import PoseAt
@@ -114,7 +114,7 @@ class Visit:
         eyes = self._eyes
         copied = copy_moves(
             watch.positions,
-            CopyProfile(eyes.settings.profile.value),
+            eyes.settings.profile,
             eyes.cell_m,
             watch.expected_frames,
             eyes.start_m,

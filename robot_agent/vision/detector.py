@@ -33,7 +33,8 @@ from robot_agent.vision.skirt import (
     sides_by_size,
     sides_of_box,
 )
-from swarm.errors import UserError, nearest
+from swarm.config.experiment import CopyProfile
+from swarm.errors import UserError
 
 MOUNTING_SD_RAD = math.radians(0.05)
 MAX_CANDIDATES = 6
@@ -93,7 +94,7 @@ class NotSeen:
 
 
 @dataclass(frozen=True)
-class Profile:
+class PatchMeasurement:
     """How a patch's sides are measured: to a fraction of a pixel, or from its size, the number of its pixels.
 
     `tolerance_px` is how far a patch's upper and lower border may be from where a skirt's would be.
@@ -107,9 +108,9 @@ class Profile:
     tolerance_px: float
 
 
-PROFILES = {
-    "best": Profile(320, 240, sub_pixel=True, edge_sd_px=0.08, tolerance_px=1.7),
-    "paper": Profile(160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6),
+MEASUREMENTS = {
+    CopyProfile.BEST: PatchMeasurement(320, 240, sub_pixel=True, edge_sd_px=0.08, tolerance_px=1.7),
+    CopyProfile.PAPER: PatchMeasurement(160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6),
 }
 
 
@@ -120,10 +121,8 @@ class Detector:
     number of the patch's pixels). The camera's model is taken at the profile's resolution.
     """
 
-    def __init__(self, profile: str, model: CameraModel, table: ColourTable) -> None:
-        if profile not in PROFILES:
-            raise UserError(f"unknown profile {profile!r}; {nearest(profile, PROFILES)}")
-        self.profile = PROFILES[profile]
+    def __init__(self, profile: CopyProfile, model: CameraModel, table: ColourTable) -> None:
+        self.profile = MEASUREMENTS[profile]
         self.model = model.scaled(self.profile.width, self.profile.height)
         self._is_skirt = (table.kinds == SKIRT).astype(np.uint8)
         self._finder = EdgeFinder(self.model, table)

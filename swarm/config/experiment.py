@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from enum import Enum
+from enum import Enum, StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -122,7 +122,7 @@ class TrackerSettings:
     """How long such a loss lasts."""
 
 
-class Watching(Enum):
+class CopyProfile(StrEnum):
     """How what was seen becomes moves."""
 
     BEST = "best"
@@ -143,7 +143,7 @@ class VisitSettings:
     """Camera frames that are looked at while watching."""
     moves: Annotated[int, Between(1, 100)] = 5
     """Consecutive moves that are remembered of what was seen."""
-    profile: Watching = Watching.BEST
+    profile: CopyProfile = CopyProfile.BEST
     """How frames become moves; see copying.md."""
 
 

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, choose_window, copy_moves
+from robot_agent.imitation.copying import Copy, NoCopy, choose_window, copy_moves
 from robot_agent.imitation.positions import ObservedPosition
+from swarm.config.experiment import CopyProfile
 from swarm.geometry import Move
 from tests.benchmarks.copying import BARS, demonstrations, score
 from tests.support.demonstrations import (
