@@ -15,6 +15,7 @@ from robot_agent.navigation.pose_estimator import PoseEstimator
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
 from swarm.geometry import Compartment, Grid, Move, Pose
+from swarm.tracker_noise import measured
 
 FIX_LATE_TICKS = 2
 """As in a run with one tick an exchange: a pose arrives two exchanges after it was true."""
@@ -77,12 +78,9 @@ class TrackedRobot:
 
     def _measured(self, t_ns: int) -> tuple[Pose, int] | None:
         """The noisy truth of this tick, or None if the tracker missed it."""
-        tracker, truth = self._tracker, self.body.truth(t_ns)
-        x_noise, y_noise, theta_noise = self._rng.standard_normal(3).tolist()
-        if self._rng.random() < tracker.loss:
-            return None
-        place = truth.x_m + tracker.noise_m * x_noise, truth.y_m + tracker.noise_m * y_noise
-        return Pose(*place, truth.theta_rad + tracker.noise_rad * theta_noise), t_ns
+        noise, loss = self._rng.standard_normal(3).tolist(), self._rng.random()
+        pose = measured(self.body.truth(t_ns), self._tracker, noise, loss)
+        return (pose, t_ns) if pose else None
 
 
 def demonstrate(
