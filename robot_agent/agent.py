@@ -104,7 +104,7 @@ class Agent:
         self._become(self.activity.displaced())
         if not isinstance(self.activity, Visiting):
             text = f"carried away from cell {state}; the move is not learnt from"
-            self._reporter.event("displaced", text)
+            self._reporter.warning("displaced", text)
 
     def _save(self, state: int) -> None:
         """From the goal a restarted robot goes on at the start."""

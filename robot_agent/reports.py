@@ -14,7 +14,7 @@ from swarm.runtime.node import Node
 STATUS_PERIOD_NS = NS_PER_S
 """The rate of status messages in docs/keys.md."""
 LONGEST_AGE_S = 1e5
-"""Above a day, longer than any run: stands for a pose that never came, which no message could hold."""
+"""Above a day, longer than any run: a pose that never came, in a message that holds finite numbers only."""
 
 
 class Reporter:
@@ -53,9 +53,10 @@ class Reporter:
         )
         self._node.publish(topics.STATUS, message, self._robot)
 
-    def event(self, name: str, text: str, level: pb.Event.Level.ValueType = pb.Event.WARNING) -> None:
+    def warning(self, name: str, text: str) -> None:
         """Something that a person should be able to read in the log."""
-        self._node.publish(topics.EVENT, pb.Event(level=level, name=name, text=text), self._robot)
+        event = pb.Event(level=pb.Event.WARNING, name=name, text=text)
+        self._node.publish(topics.EVENT, event, self._robot)
 
     def move(self, move: MoveRecord) -> None:
         """What came of a move."""

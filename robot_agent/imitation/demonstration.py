@@ -42,14 +42,17 @@ Place = tuple[float, float]
 LONG_REST_S = 1.2
 """What smoothing and frame rate leave of a rest of 1.5 s; no drive spans it."""
 MOST_FALSE_STOPS = 6
+"""Chosen: a drive back of 1.5 m takes 15 s and seems to stop a few times; bounds the pairs that are tried."""
 LEAST_CELLS = 6 * math.sqrt(2)
 """A drive back is longer than any list of five moves ..."""
 MOST_STANDING = 0.15
 """... and in less of its frames the robot seems to stand; an expert's stops take a quarter of them."""
 LEAST_CELLS_TO_START = 4.0
 MOST_STANDING_TO_START = 0.25
-"""Both bounds can be wider if the start is known, and is where the drive ends, to within ..."""
+"""Both bounds can be wider if the start is known, and is where the drive ends. Chosen, as all four bounds:
+tests/robot_agent/imitation/test_copying.py holds them to tracks with a drive back, seen with noise."""
 START_CELLS = 2.5
+"""... to within this. Chosen: far positions are uncertain by a cell or two (docs/copying.md)."""
 
 
 @dataclass(frozen=True, order=True)

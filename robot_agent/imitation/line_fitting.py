@@ -24,6 +24,7 @@ from swarm.geometry import MOVES, Move
 SPLIT_CELLS = 0.3
 """A part bends if a position is farther from its chord: 3.6 cm in cells of 12 cm."""
 MEDIAN_WINDOW = 5
+"""Bears two bad positions in a row, like the gate before it."""
 MERGE_RAD = math.pi / MOVES
 """Neighbours closer in direction than half the angle between two headings are one line."""
 PARALLEL_RAD = math.pi / 18

@@ -16,11 +16,12 @@ from swarm.geometry import wrap_angle_rad
 
 FROZEN_SHARE = 0.5
 """Share of a detection's variance that stays the same while the robot stands still, so that a smoothed
-position never becomes better than this."""
+position never becomes better than this. Most of an edge's error depends on the place within a pixel."""
 BEND_CHI2 = 16.0
-"""A drive bends where it leaves its chord by this much, ..."""
+"""A drive bends where it leaves its chord by four standard deviations, ..."""
 BEND_CELLS = 0.65
-"""... and both parts must be long enough to be moves."""
+"""... and both parts must be long enough to be moves: chosen between a whole cell and the half that
+rounds to none."""
 
 
 @dataclass(frozen=True)

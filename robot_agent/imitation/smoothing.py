@@ -13,8 +13,7 @@ from robot_agent.imitation.trajectory import CHI2_GATE, Floats, SmoothedTrajecto
 ACCELERATION_NOISE_M2_S3 = 0.025
 """q: 250 cm^2/s^3 follows a robot that starts and stops within a quarter of a second."""
 FIRST_SPEED_SD_M_S = 0.10
-
-_SEEN = np.eye(2, 4)
+"""The speed at which robots drive: nothing is known of the first position's velocity but that."""
 
 
 def smooth(trajectory: Trajectory) -> SmoothedTrajectory:

@@ -26,7 +26,9 @@ BeginVisit = Callable[[pb.Order], "Visit"]
 
 
 AT_PLACE_M = 0.05
+"""Chosen: a hand does not set a robot down more exactly, and its pose is measured in any case."""
 STANDS_FOR_NS = NS_PER_S
+"""Ten fixes of a tracker at 10 Hz; chosen: enough for the heading to settle after being carried."""
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,9 @@ FIX_LATE_TICKS = 2
 FIRST_REST_S = (4.0, 4.5)
 """Long enough for an observer that looks the wrong way to find the demonstrator before it moves."""
 REST_S = (1.5, 2.0)
+"""From the experiment file's `rest_s` up: a person or a process may add half a second."""
 MOST_TICKS_A_MOVE = 600
+"""A minute: a move takes 2.4 s, so that a robot that is not there by then never will be."""
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,7 @@ class CameraModel:
     gamma: float = 1.0
     forward_m: float = 0.03
     height_m: float = 0.028
+    """Ahead of the turning axis and above the floor, as Webots' guide to the e-puck has them."""
     yaw_rad: float = 0.0
 
     def __post_init__(self) -> None:

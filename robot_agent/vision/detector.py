@@ -37,15 +37,21 @@ from swarm.config.experiment import CopyProfile
 from swarm.errors import UserError
 
 MOUNTING_SD_RAD = math.radians(0.05)
+"""Chosen: a camera's own yaw is calibrated to within this, a third of a pixel."""
 MAX_CANDIDATES = 6
+"""Chosen: bounds the work on a frame full of patches; a compartment holds one robot."""
 BORDER_PX = 5
 """An edge needs this much of the wall beside it."""
 CLEARLY_NEARER = 0.5
+"""Chosen: the best candidate must fit where the demonstrator was twice as well as the next."""
 HEIGHT_SD_PX = 1.5
+"""Chosen: pitch, body and shadow move a patch's upper and lower border by a pixel or so each."""
 MIN_WIDTH_PX = 4
+"""Chosen: narrower than a skirt anywhere in the arena (15 pixels at 1.55 m, half at 160 x 120)."""
 LIKE_PART = 0.15
+"""Chosen: of the columns beside a patch; more of the skirt's colour there is another thing close by."""
 DARK_LIGHT = 0.03
-"""Of the sensor's full scale."""
+"""Of the sensor's full scale; chosen: a wall darker than this is unlit."""
 
 
 class Reason(Enum):
