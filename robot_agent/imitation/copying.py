@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 
@@ -27,8 +26,6 @@ REST_KEPT = 2
 MOST_LOST = 0.3
 """Larger a share of frames without the demonstrator, and nothing is copied. Chosen: a frame or
 two lost in every move still show them all (tests/robot_agent/imitation/test_copying.py loses a quarter)."""
-
-Item = TypeVar("Item")
 
 
 @dataclass(frozen=True)
@@ -136,9 +133,3 @@ def _copy_by_lines(shown: SmoothedTrajectory, cell_m: float) -> Copy:
 
 
 _READERS = {CopyProfile.BEST: _copy_by_stops, CopyProfile.PAPER: _copy_by_lines}
-
-
-def choose_window(moves: Sequence[Item], count: int, rng: np.random.Generator) -> tuple[Item, ...]:
-    """`count` consecutive moves at a random place of a longer track; all of a shorter one."""
-    first = int(rng.integers(max(len(moves) - count, 0) + 1))
-    return tuple(moves[first : first + count])

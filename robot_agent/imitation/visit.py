@@ -9,7 +9,7 @@ import numpy as np
 
 from robot_agent.drivers.interfaces import Camera
 from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry, WheelSpeeds
-from robot_agent.imitation.copying import Copy, NoCopy, choose_window, copy_moves
+from robot_agent.imitation.copying import Copy, NoCopy, copy_moves
 from robot_agent.imitation.observer import Watch
 from robot_agent.imitation.provenance import observation_message
 from robot_agent.navigation.pose_estimator import PoseAt
@@ -18,7 +18,7 @@ from robot_agent.vision.detector import Detector
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import VisitSettings
 from swarm.geometry import Pose
-from swarm.learning.memory import ObservedPath
+from swarm.learning.memory import ObservedPath, choose_window
 from swarm.messages import swarm_pb2 as pb
 
 BeginVisit = Callable[[pb.Order], "Visit"]

@@ -157,6 +157,12 @@ class ObservedPath:
         return cls(tuple(Move[name] for name in moves))
 
 
+def choose_window(moves: tuple[Move, ...], count: int, rng: Rng) -> tuple[Move, ...]:
+    """`count` consecutive moves at a random place of a longer track; all of a shorter one."""
+    first = int(rng.integers(max(len(moves) - count, 0) + 1))
+    return moves[first : first + count]
+
+
 @dataclass(frozen=True)
 class AccessedPolicy:
     """Section 2.4: the other agent's greedy action in the observer's own state, for up to `length` moves.

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import numpy as np
-
 from swarm.config.experiment import Experiment
 from swarm.geometry import Move
-from swarm.learning.memory import ObservedPath
+from swarm.learning.memory import ObservedPath, choose_window
 from swarm.surrogate.copies import CopyStore
 from swarm.surrogate.durations import HEADING_AT_THE_START, Durations
 from swarm.surrogate.robots import ShownMoves, SurrogateLearner, SurrogateRobot, surrogate_robot
@@ -103,7 +101,7 @@ class RobotTrial:
         ends_s = self._due.pop(robot.settings.id)
         began_s = ends_s - self._experiment.visits.duration_s - CARRIED_S / 2
         seen = longest_drive(self._robots[robot.settings.watches].shown, began_s, ends_s - CARRIED_S / 2)
-        true = window(seen, self._experiment.visits.moves, robot.copy_rng)
+        true = choose_window(seen, self._experiment.visits.moves, robot.copy_rng)
         copied = self._copies.drawn(true, robot.copy_rng) if true else ()
         if copied:
             robot.learner.remember(ObservedPath(copied))
@@ -119,9 +117,3 @@ def longest_drive(shown: Iterable[ShownMoves], began_s: float, ended_s: float) -
             parts.setdefault(move.track, []).append(move.move)
     longest: list[Move] = max(parts.values(), key=lambda part: len(part), default=[])
     return tuple(longest)
-
-
-def window(moves: tuple[Move, ...], count: int, rng: np.random.Generator) -> tuple[Move, ...]:
-    """`count` consecutive moves at a random place; all of a shorter list."""
-    first = int(rng.integers(max(len(moves) - count, 0) + 1))
-    return moves[first : first + count]

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 
 from robot_agent.policies.learner import LearningPolicy
 from robot_agent.reports import Reporter
@@ -19,7 +18,7 @@ from swarm.messages import topics
 from swarm.surrogate.copies import CopyPair, CopyStore
 from swarm.surrogate.durations import KINDS, Durations
 from swarm.surrogate.robots import ShownMoves, SurrogateLearner
-from swarm.surrogate.trial import RobotTrial, longest_drive, window
+from swarm.surrogate.trial import RobotTrial, longest_drive
 from tests.support.local_node import LocalNode
 from tests.support.swarm_runs import ROOT
 
@@ -110,14 +109,6 @@ def test_only_moves_wholly_in_view_are_seen_and_of_one_journey() -> None:
     seen += [shown(Move.W, 36.0, 1), shown(Move.NW, 39.5, 1)]
     assert longest_drive(seen, 10.0, 41.0) == (Move.E, Move.S)
     assert longest_drive(seen, 50.0, 60.0) == ()
-
-
-@pytest.mark.parametrize("count", [3, 5])
-def test_a_window_is_consecutive_and_anywhere(count: int) -> None:
-    moves = tuple(Move(number) for number in range(5))
-    rng = np.random.default_rng(1)
-    found = {window(moves, count, rng) for _ in range(100)}
-    assert found == {moves[first : first + count] for first in range(6 - count)}
 
 
 def test_the_deployed_stores_can_be_read() -> None:
