@@ -17,7 +17,7 @@ from robot_agent.reports import Reporter
 from robot_agent.vision.detector import Detector
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import VisitSettings
-from swarm.geometry import Pose
+from swarm.geometry import Move, Pose
 from swarm.learning.memory import ObservedPath, choose_window
 from swarm.messages import swarm_pb2 as pb
 
@@ -95,19 +95,19 @@ class Visit:
 
     def _finish(self, watch: Watch) -> None:
         copied = self._copied(watch)
-        window: tuple[int, ...] = ()
-        path, reason = 0, ""
-        if isinstance(copied, NoCopy):
-            reason = copied.reason
-        else:
-            moves = choose_window(copied.path().moves, self._eyes.settings.moves, self._eyes.rng)
-            window = tuple(int(move) for move in moves)
+        window = self._window(copied)
         profile = self._eyes.settings.profile.value
         self._reporter.observation(observation_message(self.number, profile, watch, copied, window))
-        if not isinstance(copied, NoCopy):
-            path = self._eyes.remember(ObservedPath(moves), self.number)
+        path = self._eyes.remember(ObservedPath(window), self.number) if window else 0
+        reason = copied.reason if isinstance(copied, NoCopy) else ""
         self.done = True
         self._reporter.visit(self.number, pb.Visit.DONE, path, reason)
+
+    def _window(self, copied: Copy | NoCopy) -> tuple[Move, ...]:
+        """The moves that will be remembered; a copy has at least one."""
+        if isinstance(copied, NoCopy):
+            return ()
+        return choose_window(copied.path().moves, self._eyes.settings.moves, self._eyes.rng)
 
     def _copied(self, watch: Watch) -> Copy | NoCopy:
         """Nothing is learnt from an observation that was given up."""
