@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
+from google.protobuf.message import Message
+
 from robot_agent.drivers.kinematics import WheelSpeeds
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
@@ -9,7 +13,10 @@ from swarm.learning.learner import MoveRecord, ReplayRecord
 from swarm.learning.memory import ObservedPath
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.messages.topics import Topic
 from swarm.runtime.node import Node
+
+M = TypeVar("M", bound=Message)
 
 STATUS_PERIOD_NS = NS_PER_S
 """The rate of status messages in docs/keys.md."""
@@ -35,7 +42,7 @@ class Reporter:
             y_m=believed.y_m,
             theta_rad=believed.theta_rad,
         )
-        self._node.publish(topics.COMMAND, message, self._robot)
+        self._publish(topics.COMMAND, message)
 
     def status(
         self, t_ns: int, activity: str, moves: int, tracks: int, pose_age_s: float, bad_messages: int
@@ -51,12 +58,12 @@ class Reporter:
             pose_age_s=min(pose_age_s, LONGEST_AGE_S),
             bad_messages=bad_messages,
         )
-        self._node.publish(topics.STATUS, message, self._robot)
+        self._publish(topics.STATUS, message)
 
     def warning(self, name: str, text: str) -> None:
         """Something that a person should be able to read in the log."""
         event = pb.Event(level=pb.Event.WARNING, name=name, text=text)
-        self._node.publish(topics.EVENT, event, self._robot)
+        self._publish(topics.EVENT, event)
 
     def move(self, move: MoveRecord) -> None:
         """What came of a move."""
@@ -74,7 +81,7 @@ class Reporter:
             blocked=made.blocked,
             path=move.path,
         )
-        self._node.publish(topics.MOVE, message, self._robot)
+        self._publish(topics.MOVE, message)
 
     def replay(self, replay: ReplayRecord) -> None:
         """How the replay of a path ended."""
@@ -86,22 +93,25 @@ class Reporter:
             ratio=replay.ratio,
             started_move=replay.started_move,
         )
-        self._node.publish(topics.REPLAY, message, self._robot)
+        self._publish(topics.REPLAY, message)
 
     def best_path(self, move: int, length: int, cap: int) -> None:
         """The greedy path's length after a move; one that does not arrive counts as `cap`."""
-        self._node.publish(topics.BEST_PATH, pb.BestPath(move=move, length=length, cap=cap), self._robot)
+        self._publish(topics.BEST_PATH, pb.BestPath(move=move, length=length, cap=cap))
 
     def path(self, number: int, path: ObservedPath, source: str, visit: int) -> None:
         """A path that entered the memory; `source` is "given" or "camera"."""
         message = pb.PathRemembered(path=number, moves=path.moves, source=source, visit=visit)
-        self._node.publish(topics.PATH, message, self._robot)
+        self._publish(topics.PATH, message)
 
     def observation(self, observation: pb.Observation) -> None:
         """Where a copied path comes from, frame by frame."""
-        self._node.publish(topics.OBSERVATION, observation, self._robot)
+        self._publish(topics.OBSERVATION, observation)
 
     def visit(self, number: int, phase: pb.Visit.Phase.ValueType, path: int = 0, reason: str = "") -> None:
         """How far a visit is; at its end the path that was remembered, or why there is none."""
         message = pb.Visit(visit=number, phase=phase, path=path, reason=reason)
-        self._node.publish(topics.VISIT, message, self._robot)
+        self._publish(topics.VISIT, message)
+
+    def _publish(self, topic: Topic[M], message: M) -> None:
+        self._node.publish(topic, message, self._robot)
