@@ -44,7 +44,7 @@ def test_every_link_leads_to_a_file(page: Path) -> None:
 
 
 def folders_shown(page: Path) -> set[str]:
-    """The folders of the tree in a page: lines of `name/   what it is`, each inside the less indented one above."""
+    """The folders of the tree in a page: lines such as `logs/   reading`, in the less indented ones above."""
     shown, above = set(), {0: ""}
     for indent, name in re.findall(r"^    ( *)([a-z_]+/) {2,}\S", page.read_text(encoding="utf-8"), re.M):
         folder = above[len(indent)] + name
