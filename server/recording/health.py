@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from server.hubs.hub import Batch
+from server.reporter import Reporter
 from swarm.clock import NS_PER_S
 from swarm.messages.topics import topic_of
 
@@ -13,10 +12,10 @@ LOW_SHARE = 0.5
 
 
 class Health:
-    """Counts messages in windows of 10 s of the run; `report` is told of keys that fall behind or recover."""
+    """Counts messages in windows of 10 s of the run; an event tells of keys that fall behind or recover."""
 
-    def __init__(self, report: Callable[[str, str], None]) -> None:
-        self._report = report
+    def __init__(self, reporter: Reporter) -> None:
+        self._reporter = reporter
         self._counts: dict[str, int] = {}
         self._low: set[str] = set()
         self._window_began_ns: int | None = None
@@ -46,4 +45,4 @@ class Health:
         if (share < LOW_SHARE) != (key in self._low):
             self._low ^= {key}
             name = "slow" if share < LOW_SHARE else "recovered"
-            self._report(name, f"{key}: {share:.0%} of the declared rate")
+            self._reporter.event(name, f"{key}: {share:.0%} of the declared rate")

@@ -16,6 +16,8 @@ import numpy as np
 from swarm.errors import UserError
 from swarm.geometry import MOVES, Move
 
+STORED_COPIES = Path(__file__).parent / "data" / "best.csv"
+"""Of rendered demonstrations with the profile `best`; comes with the package."""
 COLUMNS = ["kind", "true", "copied"]
 ENOUGH = 20
 """So many stored copies of the very same list, and others are not needed."""

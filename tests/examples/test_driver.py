@@ -1,4 +1,4 @@
-"""The example driver is installed as a user would install it, found by its name, and keeps the body's contract."""
+"""The example driver: installed as a user would, found by its name, held to the body's contract."""
 
 from __future__ import annotations
 
@@ -27,16 +27,8 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("driver")
     shutil.copytree(ROOT / "examples" / "own_driver", folder / "source")
     options = ["--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check"]
-    command = [
-        sys.executable,
-        "-m",
-        "pip",
-        "install",
-        *options,
-        "--target",
-        folder / "site",
-        folder / "source",
-    ]
+    places = ["--target", str(folder / "site"), str(folder / "source")]
+    command = [sys.executable, "-m", "pip", "install", *options, *places]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return folder / "site"

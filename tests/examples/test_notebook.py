@@ -14,8 +14,12 @@ PATIENCE_S = 24 * 3600
 """The kernel may start as slowly as a busy machine lets it."""
 
 
+def opened() -> nbformat.NotebookNode:
+    return nbformat.read(NOTEBOOK, as_version=4)  # type: ignore[no-untyped-call]
+
+
 def test_the_notebook_runs_and_shows_tables_and_figures(tmp_path: Path) -> None:
-    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    notebook = opened()
     folder = {"metadata": {"path": str(tmp_path)}}
     NotebookClient(notebook, startup_timeout=PATIENCE_S, resources=folder).execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
@@ -25,5 +29,4 @@ def test_the_notebook_runs_and_shows_tables_and_figures(tmp_path: Path) -> None:
 
 
 def test_the_notebook_is_kept_without_outputs() -> None:
-    cells = nbformat.read(NOTEBOOK, as_version=4).cells
-    assert not [cell for cell in cells if cell.get("outputs") or cell.get("execution_count")]
+    assert not [cell for cell in opened().cells if cell.get("outputs") or cell.get("execution_count")]
