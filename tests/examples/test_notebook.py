@@ -15,7 +15,8 @@ PATIENCE_S = 24 * 3600
 
 
 def opened() -> nbformat.NotebookNode:
-    return nbformat.read(NOTEBOOK, as_version=4)  # type: ignore[no-untyped-call]
+    notebook: nbformat.NotebookNode = nbformat.read(NOTEBOOK, as_version=4)  # type: ignore[no-untyped-call]
+    return notebook
 
 
 def test_the_notebook_runs_and_shows_tables_and_figures(tmp_path: Path) -> None:
