@@ -77,8 +77,7 @@ def summary(assessment: Assessment) -> str:
 def as_markdown(assessment: Assessment, command: str) -> str:
     """The verdict table, then every comparison; `command` is what made it."""
     verdicts = [
-        (judged.claim.figure, judged.claim.text, f"**{judged.verdict.value}**")
-        for judged in assessment.judged
+        (judged.figure, judged.claim.text, f"**{judged.verdict.value}**") for judged in assessment.judged
     ]
     blocks = [
         "# The paper's claims about its simulations, and what was measured",
@@ -93,7 +92,7 @@ def as_markdown(assessment: Assessment, command: str) -> str:
 
 
 def _details(judged: Judged) -> str:
-    heading = f"### {judged.claim.figure}: {judged.verdict.value}\n\n> {judged.claim.text}"
+    heading = f"### {judged.figure}: {judged.verdict.value}\n\n> {judged.claim.text}"
     return f"{heading}\n\n{_markdown_table(COLUMNS, map(row, judged.findings))}"
 
 
@@ -124,7 +123,7 @@ def as_html(assessment: Assessment, command: str) -> str:
         f"Made by <code>{escape(command)}</code>: {assessment.runs} runs of each condition, "
         f"seed {assessment.seed}. {escape(summary(assessment))}."
     )
-    figures = dict.fromkeys(judged.claim.figure for judged in assessment.judged)
+    figures = dict.fromkeys(judged.figure for judged in assessment.judged)
     return "\n".join(
         [
             f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>',
@@ -140,7 +139,7 @@ def as_html(assessment: Assessment, command: str) -> str:
 def _figure(figure: str, assessment: Assessment) -> str:
     plot = assessment.plots.get(figure)
     parts = [f'<h2 id="{figure}">{figure}</h2>', _image(figure, plot) if plot else ""]
-    parts += [_claim(judged) for judged in assessment.judged if judged.claim.figure == figure]
+    parts += [_claim(judged) for judged in assessment.judged if judged.figure == figure]
     return "\n".join(parts)
 
 
@@ -153,7 +152,7 @@ def _claim(judged: Judged) -> str:
 def _verdict_table(judged: Iterable[Judged]) -> str:
     rows = (
         (
-            f'<a href="#{one.claim.figure}">{one.claim.figure}</a>',
+            f'<a href="#{one.figure}">{one.figure}</a>',
             escape(one.claim.text),
             f'<span style="background:{COLOURS[one.verdict]}">{one.verdict.value}</span>',
         )
