@@ -34,6 +34,8 @@ class LogIdentity:
     learners: frozenset[str]
     cell_m: float
     """The side of a cell of the grids."""
+    shortest_moves: int
+    """From a grid's start to its goal, the opposite corner."""
 
     def condition(self, robot: str) -> str:
         """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""
@@ -50,6 +52,7 @@ def identify(path: Path) -> LogIdentity:
     reader = LogReader(path)
     metadata = reader.read_metadata()
     run, robots = metadata.get("run", {}), metadata.get("robots", {})
+    experiment = metadata.get("experiment", {}).get("toml", "")
     try:
         words = {robot: _role_and_condition(text) for robot, text in robots.items()}
         return LogIdentity(
@@ -62,7 +65,8 @@ def identify(path: Path) -> LogIdentity:
             commit=metadata.get("versions", {}).get("commit", UNKNOWN),
             conditions={robot: condition for robot, (_, condition) in words.items()},
             learners=frozenset(robot for robot, (role, _) in words.items() if role == Role.LEARNER.value),
-            cell_m=_cell_m(metadata.get("experiment", {}).get("toml", "")),
+            cell_m=_in_arena(experiment, "cell_m"),
+            shortest_moves=int(max(_in_arena(experiment, "columns"), _in_arena(experiment, "rows"))) - 1,
         )
     except (KeyError, ValueError) as error:
         reason = "does not say which run and trial it holds: was it recorded by swarm-server?"
@@ -76,14 +80,14 @@ def _role_and_condition(text: str) -> tuple[str, str]:
     return role, condition
 
 
-def _cell_m(experiment: str) -> float:
-    """Of the experiment's [arena]; the default where it says nothing that makes sense."""
-    default_m = ArenaSettings().cell_m
+def _in_arena(experiment: str, name: str) -> float:
+    """A number of the experiment's [arena]; the default where it says nothing that makes sense."""
+    default = float(getattr(ArenaSettings(), name))
     try:
-        cell_m = float(tomllib.loads(experiment).get("arena", {}).get("cell_m", default_m))
+        value = float(tomllib.loads(experiment).get("arena", {}).get(name, default))
     except (ValueError, TypeError, AttributeError):
-        return default_m
-    return cell_m if 0 < cell_m < math.inf else default_m
+        return default
+    return value if 0 < value < math.inf else default
 
 
 def _count(text: str) -> int:

@@ -8,7 +8,8 @@ from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 
-from swarm.files import write_whole
+from swarm.files import write_text
+from swarm.markdown import table
 from swarm.paper.assessment import Assessment
 from swarm.paper.report_json import as_json
 from swarm.paper.verdicts.finding import Finding, Tested, Verdict
@@ -83,7 +84,7 @@ def as_markdown(assessment: Assessment, command: str) -> str:
         "# The paper's claims about its simulations, and what was measured",
         f"Made by `{command}`: {assessment.runs} runs of each condition, seed {assessment.seed}. "
         f"{summary(assessment)}.",
-        _markdown_table(("figure", "the paper's words", "verdict"), verdicts),
+        table(("figure", "the paper's words", "verdict"), verdicts),
         "## Every comparison",
         LEGEND,
         *(_details(judged) for judged in assessment.judged),
@@ -93,12 +94,7 @@ def as_markdown(assessment: Assessment, command: str) -> str:
 
 def _details(judged: Judged) -> str:
     heading = f"### {judged.figure}: {judged.verdict.value}\n\n> {judged.claim.text}"
-    return f"{heading}\n\n{_markdown_table(COLUMNS, map(row, judged.findings))}"
-
-
-def _markdown_table(columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
-    lines = [columns, tuple("---" for _ in columns), *rows]
-    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
+    return f"{heading}\n\n{table(COLUMNS, map(row, judged.findings))}"
 
 
 COLOURS = {
@@ -180,9 +176,4 @@ def write_report(assessment: Assessment, command: str) -> dict[str, Path]:
         "html": ("claims.html", as_html(assessment, command)),
     }
     assessment.folder.mkdir(parents=True, exist_ok=True)
-    return {form: _written(assessment.folder / name, text) for form, (name, text) in texts.items()}
-
-
-def _written(path: Path, text: str) -> Path:
-    write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
-    return path
+    return {form: write_text(text, assessment.folder / name) for form, (name, text) in texts.items()}
