@@ -21,7 +21,7 @@ BOLD_POINTS = 300
 LEGEND_COLUMNS = 3
 """So many names fit the width of the picture."""
 POINT_MOVES = 10
-"""A robot finds out its best path every so many moves (section 3.3: ten state transitions)."""
+"""A robot finds out its best path every so many moves."""
 
 
 def plot_curves(found: RunCurves, title: str, paper_axes: bool = False) -> Figure:

@@ -14,7 +14,7 @@ from swarm.logs.reader import LogChannel, Part
 from swarm.messages.topics import topic_of
 
 _S_PER_NS = 1e-9
-_SCHEMA: dict[str, Any] = {
+HEALTH_SCHEMA: dict[str, Any] = {
     "log": pl.String,
     "seed": pl.Int64,
     "trial": pl.Int64,
@@ -65,7 +65,9 @@ class HealthTable:
         for channel in channels:
             restart = restarts[channel.key] = restarts.get(channel.key, -1) + 1
             found.append(self._row(channel) | {"restart": restart})
-        return pl.DataFrame([{name: row[name] for name in _SCHEMA} for row in found], schema=_SCHEMA)
+        return pl.DataFrame(
+            [{name: row[name] for name in HEALTH_SCHEMA} for row in found], schema=HEALTH_SCHEMA
+        )
 
     def _row(self, channel: LogChannel) -> dict[str, Any]:
         topic = topic_of(channel.key)

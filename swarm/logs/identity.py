@@ -34,6 +34,8 @@ class LogIdentity:
     learners: frozenset[str]
     cell_m: float
     """The side of a cell of the grids."""
+    columns: int
+    """Of a grid."""
     shortest_moves: int
     """From a grid's start to its goal, the opposite corner."""
 
@@ -53,6 +55,7 @@ def identify(path: Path) -> LogIdentity:
     metadata = reader.read_metadata()
     run, robots = metadata.get("run", {}), metadata.get("robots", {})
     experiment = metadata.get("experiment", {}).get("toml", "")
+    columns = max(1, int(_in_arena(experiment, "columns")))
     try:
         words = {robot: _role_and_condition(text) for robot, text in robots.items()}
         return LogIdentity(
@@ -66,7 +69,8 @@ def identify(path: Path) -> LogIdentity:
             conditions={robot: condition for robot, (_, condition) in words.items()},
             learners=frozenset(robot for robot, (role, _) in words.items() if role == Role.LEARNER.value),
             cell_m=_in_arena(experiment, "cell_m"),
-            shortest_moves=int(max(_in_arena(experiment, "columns"), _in_arena(experiment, "rows"))) - 1,
+            columns=columns,
+            shortest_moves=max(columns, int(_in_arena(experiment, "rows"))) - 1,
         )
     except (KeyError, ValueError) as error:
         reason = "does not say which run and trial it holds: was it recorded by swarm-server?"

@@ -8,7 +8,6 @@ from itertools import accumulate
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
 
 from swarm.geometry import Grid, Move
 from swarm.paper.results import Results
@@ -42,7 +41,7 @@ def _draw_curves(axes: Axes, study: Study, results: Results) -> None:
     unit = "time units" if study.time_unit_steps == 1 else f"{study.time_unit_steps} time units"
     axes.set_xlabel(f"Time ({unit})")
     axes.set_ylabel("Best path length")
-    axes.set_xlim(left=0)
+    axes.set_xlim(0, results.horizon(study.horizon_steps) / study.time_unit_steps)
     axes.set_ylim(bottom=0)
     _add_legend(axes, interval_words(results.runs, "run"))
 
@@ -62,7 +61,7 @@ def _draw_mean(axes: Axes, curves: Curves, study: Study, label: str, colour: str
 
 
 def _draw_ratios(axes: Axes, study: Study, results: Results) -> None:
-    """A bar for each path, with the 95 % interval of its mean if there are enough runs."""
+    """A bar for each path, with the 95 % interval of its mean, or a dot for each of too few runs."""
     tables = ratio_table(study, results)
     width = 0.8 / max(1, len(tables))
     for place, (label, table) in enumerate(tables.items()):
@@ -72,15 +71,13 @@ def _draw_ratios(axes: Axes, study: Study, results: Results) -> None:
         at = np.arange(len(table)) + (place - (len(tables) - 1) / 2) * width
         errors = np.nan_to_num([mean - low, high - mean])
         axes.bar(at, mean, width, yerr=errors if errors.any() else None, capsize=3, label=label)
+        if 1 < results.runs < FEWEST:
+            axes.plot(at, results.ratios(study.series[label]).T, ".", color="black", markersize=4)
         axes.set_xticks(np.arange(len(table)), list(table))
     axes.set_xlabel("Path")
     axes.set_ylabel("R")
-    axes.yaxis.set_major_locator(MultipleLocator(0.1))
-    _add_legend(axes, "1 run" if results.runs == 1 else _of_bars(results.runs))
-
-
-def _of_bars(runs: int) -> str:
-    return f"{runs} runs: mean" + (" and 95 % interval" if runs >= FEWEST else "")
+    axes.set_ylim(bottom=0)
+    _add_legend(axes, interval_words(results.runs, "run"))
 
 
 def _add_legend(axes: Axes, title: str) -> None:

@@ -227,8 +227,8 @@ def test_tables_hold_every_field_and_where_it_comes_from(tmp_path: Path) -> None
     origin = {"seed": 7, "trial": 2, "condition": "no-imitation", "robot": "loner", "epoch": 1, "sequence": 1}
     assert move.items() >= origin.items()
     assert move["publish_t_ns"] == 200_000_000
-    assert (move["action"], move["duration_s"], move["blocked"]) == (3, 2.5, True)
-    assert table(analysis, "paths")["moves"].to_list() == [[1, 1, 0]]
+    assert (move["action"], move["duration_s"], move["blocked"]) == ("SW", 2.5, True)
+    assert table(analysis, "paths")["moves"].to_list() == [["SE", "SE", "E"]]
     event = table(analysis, "events").row(0, named=True)
     assert (event["robot"], event["condition"], event["level"]) == ("server", "", "WARNING")
     assert table(analysis, "poses").height == 0
