@@ -7,14 +7,14 @@ from typing import Any
 
 import polars as pl
 
-from swarm.analysis.comparison import LEVEL, Comparison, NoComparison
+from swarm.analysis.comparison import Comparison, NoComparison
 from swarm.analysis.copying.drawing import moves_text
 from swarm.analysis.copying.report import copying_section
 from swarm.analysis.plots import interval_note
 from swarm.analysis.summary import Summary
 from swarm.logs.completeness import health_totals
 from swarm.markdown import table, text_number
-from swarm.statistics.paired_tests import Window
+from swarm.statistics.paired_tests import LEVEL, Window
 
 _SHOWN = 20
 """Rows of a table that is read, not searched."""

@@ -14,7 +14,7 @@ from google.protobuf.message import Message
 from swarm.geometry import Move
 from swarm.logs.columns import column
 from swarm.logs.identity import LogIdentity
-from swarm.logs.reader import LogChannel, Part
+from swarm.logs.reader import S_PER_NS, LogChannel, Part
 from swarm.messages import topics
 from swarm.messages.topics import Topic
 from swarm.messages.validation import BadMessageError, decode
@@ -101,9 +101,6 @@ def empty_table(table: str) -> pl.DataFrame:
     types: dict[str, Any] = dict.fromkeys(("log", "condition", "robot"), pl.String) | {"t_s": pl.Float64}
     origin = pl.DataFrame({name: pl.Series([], dtype=types.get(name, pl.Int64)) for name in _ORIGIN})
     return next(found.frame for found in _tables(topic, origin, [], 1) if found.table == table)
-
-
-S_PER_NS = 1e-9
 
 
 _ORIGIN = (

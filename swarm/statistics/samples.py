@@ -1,4 +1,4 @@
-"""What a study measures: numbers or curves of replicates, their area, and which may be paired."""
+"""What a study measures: numbers or curves of replicates, and which may be paired."""
 
 from __future__ import annotations
 
@@ -83,14 +83,8 @@ def _check_rows(name: str, values: FloatArray, replicates: tuple[Hashable, ...],
         raise UserError(f"{name}: a value is not finite; censor or drop it before any statistics")
 
 
-def area_under_curve(curves: Curves) -> Sample:
-    """The trapezoidal area of each replicate, in the curve's unit times the unit of time."""
-    area = np.asarray(np.trapezoid(curves.values, curves.times, axis=1))
-    return Sample(curves.name, area, curves.replicates)
-
-
 def mean_level(curves: Curves) -> Sample:
-    """The mean over the curve's points of each replicate: the height of its area, in the curve's unit."""
+    """The mean over the curve's points of each replicate, in the curve's unit."""
     return Sample(curves.name, curves.values.mean(axis=1), curves.replicates, curves.scale)
 
 

@@ -30,6 +30,7 @@ def kind_of(heading: int, action: int) -> str:
 
 
 KINDS = (*(f"turn{turn}-{way}" for turn in range(5) for way in ("side", "diagonal")), DRIVE_BACK)
+"""A turn is of 0 to 4 eighths of a circle, either way round."""
 
 
 @dataclass(frozen=True)

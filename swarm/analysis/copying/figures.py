@@ -27,6 +27,7 @@ from swarm.analysis.plots import COLOURS, GREY
 from swarm.markdown import counted
 
 PERFECT, WRONG, UNJUDGED = COLOURS[0], COLOURS[1], GREY
+"""Blue, orange and grey: told apart by everybody."""
 CAPTION_LETTERS, CAPTION_LINES = 44, 2
 """What fits under half of an original with its copy."""
 NOTE_LETTERS_AN_INCH = 15

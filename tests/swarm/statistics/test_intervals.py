@@ -15,7 +15,7 @@ from swarm.statistics.intervals import (
     weighted_iqm,
     weighted_mean,
 )
-from swarm.statistics.samples import Curves, Sample, Scale, area_under_curve, average_of_learners, mean_level
+from swarm.statistics.samples import Curves, Sample, Scale, average_of_learners, mean_level
 
 
 def random_walks(seed: int, replicates: int, points: int) -> np.ndarray:
@@ -145,9 +145,8 @@ def test_one_replicate_has_no_interval() -> None:
         pointwise_t_band(np.ones((1, 3)))
 
 
-def test_the_area_under_known_curves() -> None:
+def test_the_level_of_known_curves() -> None:
     curves = Curves("ramp", np.array([0.0, 1, 3]), np.array([[0.0, 1, 3], [2, 2, 2]]), (0, 1))
-    np.testing.assert_allclose(area_under_curve(curves).values, [4.5, 6.0])
     np.testing.assert_allclose(mean_level(curves).values, [4 / 3, 2.0])
 
 
