@@ -92,7 +92,7 @@ def rows(part: Part, identity: LogIdentity) -> PartRows:
         raise ValueError(f"{part.channel.key} enters no table")
     messages, good, rejected = _decoded(part, topic.message)
     origin = pl.DataFrame(_origin(part, identity, good))
-    return PartRows(_tables(topic, origin, messages, identity.columns), rejected)
+    return PartRows(_tables(topic, origin, messages, identity.grid.columns), rejected)
 
 
 def empty_table(table: str) -> pl.DataFrame:

@@ -14,12 +14,12 @@ from swarm.analysis.learning_curves import curve_table
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.files import write_table
+from swarm.learning.learner import MOVES_BETWEEN_EVALUATIONS
 from swarm.parallel import workers
 from swarm.statistics.intervals import interval
 from swarm.statistics.samples import Curves, Scale, average_of_learners
 from swarm.surrogate.copies import CopyStore, load_copies
 from swarm.surrogate.durations import Durations, load_durations
-from swarm.surrogate.robots import MOVES_BETWEEN_EVALUATIONS
 from swarm.surrogate.trial import CopiedPath, RobotTrial, TrialOutcome
 
 PAPER_TRIALS = 4
