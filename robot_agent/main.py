@@ -16,9 +16,10 @@ from swarm.runtime.process import (
     OneLineParser,
     add_common_arguments,
     joined,
-    leave_on_signals,
+    leave_with_parent,
     load_experiment,
 )
+from swarm.signals import leave_on_signals
 
 
 def main() -> None:
@@ -45,6 +46,8 @@ def run(arguments: argparse.Namespace) -> None:
     experiment = load_experiment(arguments)
     names = _names(arguments.robot, experiment)
     leave_on_signals()
+    if arguments.supervised:
+        leave_with_parent()
     with joined(arguments, "robot", names, experiment.simulation.tick_s) as node:
         assembly = Assembly(experiment, node, arguments.trial)
         agents = [assembly.agent(name) for name in names]

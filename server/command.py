@@ -17,8 +17,9 @@ from server.run import Run
 from server.run_directory import RunDirectory
 from swarm.cli.output import print_json
 from swarm.config.experiment import Experiment
-from swarm.runtime.process import OneLineParser, leave_on_signals
+from swarm.runtime.process import OneLineParser
 from swarm.runtime.zenoh_session import Session, SessionSettings
+from swarm.signals import leave_on_signals
 
 
 def run() -> None:

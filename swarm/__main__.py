@@ -1,5 +1,15 @@
-"""`python -m swarm`."""
+"""`swarm` and `python -m swarm`: it obeys signals before it loads what it works with."""
 
-from swarm.cli.main import main
+from swarm.signals import obeying_signals
 
-main()
+
+def main() -> None:
+    """Entry point of `swarm`."""
+    with obeying_signals():
+        from swarm.cli.main import main as swarm
+
+        swarm()
+
+
+if __name__ == "__main__":
+    main()

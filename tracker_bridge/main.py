@@ -10,9 +10,10 @@ from swarm.runtime.process import (
     OneLineParser,
     add_common_arguments,
     joined,
-    leave_on_signals,
+    leave_with_parent,
     load_experiment,
 )
+from swarm.signals import leave_on_signals
 from tracker_bridge.backends.registry import backend_named
 from tracker_bridge.bridge import Bridge
 from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
@@ -28,6 +29,8 @@ def run(arguments: argparse.Namespace) -> None:
     experiment = load_experiment(arguments)
     make_backend = backend_named(experiment.tracker.backend)
     leave_on_signals()
+    if arguments.supervised:
+        leave_with_parent()
     with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s) as node:
         backend = make_backend(experiment, node, arguments.trial)
         arena = experiment.arena

@@ -31,7 +31,7 @@ def run_table(
     The processes of robots leave a list of all keys that they received (`output`/PROCESS.keys).
     """
     run = experiment.run
-    changed = ("--seed", str(run.seed), "--moves", str(run.moves), "--trial", str(trial))
+    changed = ("--seed", str(run.seed), "--moves", str(run.moves), "--trial", str(trial), "--supervised")
     common = (str(file), "--connect", endpoint, *changed, *pace.arguments())
     specs = [ProcessSpec("tracker", "tracker_bridge", (*common, "--process", "tracker"))]
     for number, names in enumerate(_divided(experiment)):

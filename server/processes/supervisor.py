@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import subprocess
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,9 +13,8 @@ from server.processes.cpu_affinity import keep, spread
 from swarm.errors import RunFailedError
 from swarm.interpreter import child_environment, module_command
 from swarm.parallel import available_cores
-
-LEAVE_WITHIN_S = 5.0
-"""A process leaves after its step, which takes far less; one that has not by then hangs."""
+from swarm.runtime.process import LEAVE_WITHIN_S
+from swarm.signals import signals_held
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,9 @@ class ProcessSpec:
 
 
 class Supervisor:
-    """The processes of one trial, as a context manager: none outlives the block.
+    """The processes of one trial, as a context manager: none outlives the block, nor this process.
+
+    Each has a pipe from here as its standard input, which ends when this process does, however it ends.
 
     They run in process groups of their own, so that Ctrl-C reaches the server alone, which then ends the
     trial in order. (In sessions of their own the kernel would schedule each against all others, and a
@@ -43,19 +45,34 @@ class Supervisor:
 
     def __enter__(self) -> Supervisor:
         self._output.mkdir(parents=True, exist_ok=True)
-        for number, spec in enumerate(self._specs):
-            self._processes[spec.name] = self._started(spec, number)
+        try:
+            for number, spec in enumerate(self._specs):
+                with signals_held():
+                    self._processes[spec.name] = self._started(spec, number)
+        except BaseException:
+            self._end_now()
+            raise
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None:
-            self._signal(signal.SIGTERM)
+            self._end_now()
+        else:
+            self._await_end()
+
+    def _end_now(self) -> None:
+        self._signal(signal.SIGTERM)
+        self._await_end()
+
+    def _await_end(self) -> None:
+        """All have the same few seconds; whoever hangs is killed."""
+        deadline_s = time.monotonic() + LEAVE_WITHIN_S
         for process in self._processes.values():
-            try:
-                process.wait(LEAVE_WITHIN_S)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+            with process:
+                try:
+                    process.wait(max(0.0, deadline_s - time.monotonic()))
+                except subprocess.TimeoutExpired:
+                    process.kill()
 
     def check(self) -> None:
         """RunFailedError if a process has ended: which, how, and the last line it printed."""
@@ -72,7 +89,7 @@ class Supervisor:
         with self._log(spec.name).open("wb") as output:
             process = subprocess.Popen(
                 module_command(spec.module, *spec.arguments),
-                stdin=subprocess.DEVNULL,
+                stdin=subprocess.PIPE,
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 process_group=0,

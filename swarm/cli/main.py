@@ -6,12 +6,14 @@ import sys
 
 from swarm.errors import guarded
 from swarm.extras import require_extra
+from swarm.signals import leave_on_signals
 
 
 def _run() -> None:
     require_extra("lab", "typer", "rich")
     from swarm.cli.app import run
 
+    leave_on_signals()
     run()
 
 

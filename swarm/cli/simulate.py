@@ -11,6 +11,7 @@ import typer
 
 from swarm.extras import require_extra
 from swarm.interpreter import child_environment, module_command
+from swarm.signals import leave_at_once
 
 
 def simulate_command(
@@ -33,6 +34,7 @@ def simulate_command(
     json: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")] = False,
 ) -> None:
     """Run a simulated swarm: separate processes for agents, tracker and server, and a complete log."""
+    leave_at_once()
     require_extra("lab", "small_mcap", "rich")
     options = {"--out": out, "--seed": seed, "--moves": moves, "--speed": speed, "--processes": processes}
     given = [f"{name}={value}" for name, value in options.items() if value is not None]

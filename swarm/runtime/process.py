@@ -6,14 +6,16 @@ The command line is argparse with one-line errors, so that a board needs no extr
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 import socket
 import sys
+import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from types import FrameType
 from typing import Any, NoReturn
 
 from swarm.clock import scaled_clock, unix_clock
@@ -26,6 +28,8 @@ from swarm.runtime.zenoh_session import Session, SessionSettings
 from swarm.version import version_text
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+LEAVE_WITHIN_S = 5.0
+"""A process leaves after its step, which takes far less; one that has not by then hangs."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -58,6 +62,9 @@ def add_common_arguments(parser: argparse.ArgumentParser) -> None:
     )
     simulated = parser.add_argument_group("simulation", "the server gives these to the processes it starts")
     simulated.add_argument("--process", default="", help="the name of this process in a lockstep run")
+    simulated.add_argument(
+        "--supervised", action="store_true", help="leave when standard input ends, and say nothing of it"
+    )
     simulated.add_argument("--lockstep", action="store_true", help="step when the server says so")
     simulated.add_argument("--started-ns", type=int, default=0, help="monotonic time at which the run began")
     simulated.add_argument("--speed", type=float, default=1.0, help="how many times as fast as life")
@@ -78,7 +85,9 @@ def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s:
     settings = SessionSettings(arguments.connect, config=arguments.zenoh_config)
     if arguments.lockstep:
         settings = patient(settings)
-    with Session(settings) as session:
+    say = _say_nothing if arguments.supervised else _say
+    with Session(settings, partial(say, f"waiting for the server at {settings.endpoint}")) as session:
+        say(f"connected to the server at {settings.endpoint}")
         for name in names:
             claim(session, Presence(kind, name, socket.gethostname(), epoch))
         if arguments.lockstep:
@@ -89,11 +98,26 @@ def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s:
             yield LiveNode(session, unix_clock(), period_s, epoch)
 
 
-def leave_on_signals() -> None:
-    """SIGTERM and SIGHUP end the process as SIGINT does: through every `finally`, with 128 + the number."""
+def leave_with_parent() -> None:
+    """Leave as soon as standard input ends: whoever started this process holds it open, alive or not at all.
 
-    def leave(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
-        sys.exit(128 + number)
+    (A pipe ends with its writer on every system; Linux's PR_SET_PDEATHSIG would follow a thread.)
+    """
+    threading.Thread(target=_await_parents_end, daemon=True).start()
 
-    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
-        signal.signal(number, leave)
+
+def _await_parents_end() -> None:
+    while os.read(sys.stdin.fileno(), 1024):
+        pass
+    _say("failed: the server is gone")
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(LEAVE_WITHIN_S)
+    os._exit(1)
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def _say_nothing(text: str) -> None:
+    """The server watches a process that it started."""

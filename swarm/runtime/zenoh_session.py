@@ -5,17 +5,21 @@ Inboxes are polled from the main loop. Only the lockstep, where every wake-up co
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import json
 import os
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from swarm.errors import UserError
 from swarm.messages.topics import Delivery
+from swarm.runtime.background import in_background
+from swarm.runtime.endpoint import check_endpoint
 
 if TYPE_CHECKING:
     import zenoh
@@ -26,6 +30,8 @@ ONE_THREAD = (
 """Three threads in place of seven, and a lockstep of ten processes a fifth faster (measured)."""
 QUEUE_DEPTH = 65_536
 """Messages; fifty robots send some thousand a second: room for more than half a minute."""
+MOST_AT_ONCE = 4096
+"""Messages of an inbox in one poll: some tenths of a second of work on a board, then the others' turn."""
 WAIT_FOR_ROOM_S = 5.0
 """What must not be dropped waits so long for room, or as long as the lease; then Zenoh reconnects."""
 
@@ -63,11 +69,25 @@ class Inbox:
         self._subscriber = subscriber
 
     def poll(self) -> list[WireSample]:
-        """Everything that has arrived since the last call."""
-        samples = []
-        while (sample := self._subscriber.try_recv()) is not None:
+        """What has arrived since the last call, in order; of more than `MOST_AT_ONCE` the rest comes next."""
+        samples: list[WireSample] = []
+        while len(samples) < MOST_AT_ONCE and (sample := self._subscriber.try_recv()) is not None:
             samples.append(_sample(sample))
         return samples
+
+
+class PresenceWatch:
+    """The presence keys that have appeared and vanished, polled by the main loop."""
+
+    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
+        self._subscriber = subscriber
+
+    def poll(self) -> list[tuple[str, bool]]:
+        """Since the last call, in order: each key, and whether it is there now."""
+        changes = []
+        while (sample := self._subscriber.try_recv()) is not None:
+            changes.append((str(sample.key_expr), str(sample.kind).endswith("PUT")))
+        return changes
 
 
 class Put(Protocol):
@@ -85,9 +105,13 @@ class Publisher:
 
 
 class Session:
-    """A Zenoh session. Use it as a context manager: a session that is not closed hangs at exit."""
+    """A Zenoh session, closed at the end of its block or of the process.
 
-    def __init__(self, settings: SessionSettings) -> None:
+    To open one may take for ever where the server is not there yet: `waiting` is called once if it takes
+    longer than a moment, and signals are obeyed meanwhile.
+    """
+
+    def __init__(self, settings: SessionSettings, waiting: Callable[[], None] = lambda: None) -> None:
         os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
         import zenoh
 
@@ -96,9 +120,10 @@ class Session:
         self._tokens: list[zenoh.LivelinessToken] = []
         self._listening: list[zenoh.Subscriber[None]] = []
         try:
-            self._session = zenoh.open(_config(settings))
+            self._session = in_background(partial(_opened, settings), waiting)
         except zenoh.ZError as error:
             raise UserError(_why_not_open(settings, str(error))) from error
+        atexit.register(self.close)
 
     def __enter__(self) -> Session:
         return self
@@ -108,6 +133,7 @@ class Session:
 
     def close(self) -> None:
         """Undeclare everything and leave; presence tokens vanish for the others."""
+        atexit.unregister(self.close)
         if not self._session.is_closed():
             self._session.close()  # type: ignore[no-untyped-call]
 
@@ -160,6 +186,18 @@ class Session:
         """The presence keys that match a key expression now."""
         replies = self._session.liveliness().get(key)
         return sorted({str(reply.ok.key_expr) for reply in replies if reply.ok is not None})
+
+    def presence_watch(self, key: str) -> PresenceWatch:
+        """Watch the presence keys that match an expression: first those that are there already."""
+        channel = self._zenoh.handlers.FifoChannel(QUEUE_DEPTH)
+        return PresenceWatch(self._session.liveliness().declare_subscriber(key, channel, history=True))
+
+
+def _opened(settings: SessionSettings) -> zenoh.Session:
+    import zenoh
+
+    check_endpoint(settings.endpoint)
+    return zenoh.open(_config(settings))
 
 
 def _keep_python_state() -> None:

@@ -248,7 +248,7 @@ LEAVER = """
 import os, signal, sys
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from swarm.runtime.lockstep import LockstepNode
-from swarm.runtime.process import leave_on_signals
+from swarm.signals import leave_on_signals
 
 def step(t_ns):
     os.kill(os.getpid(), signal.SIGTERM)

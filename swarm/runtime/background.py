@@ -1,0 +1,46 @@
+"""Calls that may block for ever, made so that the process still obeys signals."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+T = TypeVar("T")
+
+MOMENT_S = 1.0
+"""Longer than to reach a server that is there, shorter than a person waits for a word."""
+
+
+def in_background(call: Callable[[], T], waiting: Callable[[], None]) -> T:
+    """The call's result, made on a thread that is left behind if a signal ends the process meanwhile.
+
+    `waiting` is called once if it takes longer than a moment. What the call raises is raised here.
+    """
+    attempt = _Attempt(call)
+    threading.Thread(target=attempt.make, daemon=True).start()
+    if not attempt.done.wait(MOMENT_S):
+        waiting()
+        attempt.done.wait()
+    return attempt.outcome()
+
+
+class _Attempt(Generic[T]):
+    def __init__(self, call: Callable[[], T]) -> None:
+        self._call = call
+        self._results: list[T] = []
+        self._error: BaseException | None = None
+        self.done = threading.Event()
+
+    def make(self) -> None:
+        try:
+            self._results.append(self._call())
+        except BaseException as error:
+            self._error = error
+        finally:
+            self.done.set()
+
+    def outcome(self) -> T:
+        if self._error:
+            raise self._error
+        return self._results[0]
