@@ -19,7 +19,7 @@ Handler = Callable[[int, FrameType | None], object]
 
 
 def leave_at_once() -> None:
-    """From now on a signal ends the process on the spot. An exception would be lost in what an import runs."""
+    """From now on a signal ends the process on the spot: an exception can be lost in what an import runs."""
     _handle(lambda number, frame: os._exit(128 + number))  # noqa: ARG005
 
 
@@ -54,8 +54,8 @@ def signals_held() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-        for number in came[:1]:
-            signal.raise_signal(number)
+        if came:
+            signal.raise_signal(came[0])
 
 
 def _ignore() -> None:

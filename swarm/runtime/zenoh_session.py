@@ -189,7 +189,7 @@ class Session:
 
     def presence_watch(self, key: str) -> PresenceWatch:
         """Watch the presence keys that match an expression: first those that are there already."""
-        channel = self._zenoh.handlers.FifoChannel(QUEUE_DEPTH)
+        channel: zenoh.handlers.FifoChannel[zenoh.Sample] = self._zenoh.handlers.FifoChannel(QUEUE_DEPTH)
         return PresenceWatch(self._session.liveliness().declare_subscriber(key, channel, history=True))
 
 
