@@ -21,6 +21,8 @@ class AgentInbox:
     """
 
     def __init__(self, node: Node, robot: str) -> None:
+        self._node = node
+        self._robot = robot
         self._poses = node.subscribe(topics.POSE, robot)
         self._orders = node.subscribe(topics.ORDER, robot)
         self._run_states = node.subscribe(topics.RUN_STATE)
@@ -37,10 +39,10 @@ class AgentInbox:
             self._heard_ns = t_ns
 
     def fixes(self) -> Iterator[tuple[Pose, int]]:
-        """The tracker's poses since the last call, each with the time it was captured."""
+        """The tracker's poses since the last call, each with the time it was captured, on this clock."""
         for received in self._poses.take():
-            pose = received.message
-            yield Pose(pose.x_m, pose.y_m, pose.theta_rad), pose.captured_t_ns
+            pose, offset_ns = received.message, self._node.offset_ns(topics.POSE, self._robot)
+            yield Pose(pose.x_m, pose.y_m, pose.theta_rad), pose.captured_t_ns + offset_ns
 
     def running(self, t_ns: int) -> bool:
         """Whether the robot may begin a move now."""

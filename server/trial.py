@@ -92,10 +92,17 @@ class Trial:
         self._t_ns = batch.t_ns
         self._batches += 1
         if self._batches % self._environment.batches_between_flushes == 0:
-            if not self._environment.waits_for_people:
-                self._conductor.check_progress(batch.t_ns)
+            self._look_for_standing(batch.t_ns)
             self._recorder.flush()
             self._show(self._conductor, self._t_ns / 1e9)
+
+    def _look_for_standing(self, t_ns: int) -> None:
+        """People can help a robot that stands."""
+        if self._environment.waits_for_people:
+            for line in self._conductor.newly_standing(t_ns):
+                self._environment.warn(line)
+        else:
+            self._conductor.check_progress(t_ns)
 
     def _note_end(self, error: BaseException) -> None:
         """The reason is the log's last message."""

@@ -24,7 +24,7 @@ class WallClock:
     ) -> None:
         self._origin_ns = origin_ns
         self._started_ns = started_ns
-        self._speed = speed
+        self.speed = speed
         self._monotonic_ns = monotonic_ns
         self._sleep = sleep
         self.late_ticks = 0
@@ -32,14 +32,14 @@ class WallClock:
 
     def now_ns(self) -> int:
         """The run's time now."""
-        return self._origin_ns + int((self._monotonic_ns() - self._started_ns) * self._speed)
+        return self._origin_ns + int((self._monotonic_ns() - self._started_ns) * self.speed)
 
     def ticks(self, period_s: float) -> Iterator[int]:
         """The run's time at every multiple of the period, each when it has come."""
         period_ns = round(period_s * NS_PER_S)
         due_ns = (self.now_ns() // period_ns + 1) * period_ns
         while True:
-            wait_s = (due_ns - self.now_ns()) / NS_PER_S / self._speed
+            wait_s = (due_ns - self.now_ns()) / NS_PER_S / self.speed
             if wait_s > 0:
                 self._sleep(wait_s)
             yield due_ns

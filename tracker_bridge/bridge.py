@@ -7,6 +7,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.runtime.node import Node
 from tracker_bridge.backends.interface import Backend, TrackedPose
+from tracker_bridge.capture_times import CaptureTimes
 from tracker_bridge.plausibility import Plausibility
 
 LOST_AFTER_NS = 2 * NS_PER_S
@@ -15,25 +16,38 @@ LOST_AFTER_NS = 2 * NS_PER_S
 class Bridge:
     """Between a tracking system and the swarm. Poses of robots that the experiment does not name are left."""
 
-    def __init__(self, backend: Backend, plausibility: Plausibility, node: Node, robots: list[str]) -> None:
+    def __init__(
+        self,
+        backend: Backend,
+        plausibility: Plausibility,
+        node: Node,
+        robots: list[str],
+        lateness_s: float = 0.0,
+        speed: float = 1.0,
+    ) -> None:
         self._backend = backend
         self._plausibility = plausibility
         self._node = node
         self._seen_ns: dict[str, int | None] = dict.fromkeys(robots)
         self._refused: dict[str, str] = {}
+        self._capture_times = CaptureTimes(self._report, lateness_s, speed)
 
     def step(self, t_ns: int) -> None:
         """One tick: pass on what the tracking system measured since the last."""
         for tracked in self._backend.poses(t_ns):
             if tracked.robot in self._seen_ns:
-                self._pass_on(tracked)
+                self._pass_on(tracked, t_ns)
         for robot, seen_ns in self._seen_ns.items():
             if seen_ns is not None and t_ns - seen_ns > LOST_AFTER_NS:
                 self._seen_ns[robot] = None
                 self._report("lost", f"{robot}: no believable pose for {LOST_AFTER_NS // NS_PER_S} s")
 
-    def _pass_on(self, tracked: TrackedPose) -> None:
-        reason = self._plausibility.reason_against(tracked)
+    def _pass_on(self, tracked: TrackedPose, t_ns: int) -> None:
+        dated = self._capture_times.on_own_clock(tracked, t_ns)
+        if dated is None:
+            reason: str | None = "time: it was captured at no time that is possible"
+        else:
+            tracked, reason = dated, self._plausibility.reason_against(dated)
         kind = reason.split(" ")[0] if reason else ""
         if reason and self._refused.get(tracked.robot) != kind:
             self._report("refused", f"{tracked.robot}: {reason}")

@@ -35,7 +35,8 @@ def run(arguments: argparse.Namespace) -> None:
         backend = make_backend(experiment, node, arguments.trial)
         arena = experiment.arena
         plausibility = Plausibility(PlausibilitySettings(arena.width_m, arena.height_m))
-        bridge = Bridge(backend, plausibility, node, [robot.id for robot in experiment.robot])
+        robots = [robot.id for robot in experiment.robot]
+        bridge = Bridge(backend, plausibility, node, robots, experiment.pose_lateness_s, arguments.speed)
         node.run(bridge.step)
 
 

@@ -31,7 +31,10 @@ class FusionSettings:
 
     heading: HeadingSettings = field(default_factory=HeadingSettings)
     memory_s: float = 2.0
-    """The oldest fix that can still be used."""
+    """The oldest fix that can still be used,"""
+    ahead_s: float = 0.5
+    """and how far ahead of the odometry one may be: two clocks that agree, and some ticks. A fix from the
+    far future would make all that follow it look old."""
 
     far_m: float = 0.06
     far_rad: float = 0.6
@@ -117,11 +120,13 @@ class PoseEstimator:
     def fix(self, pose: Pose, t_ns: int) -> None:
         """Take in the pose that the tracker measured at `t_ns`.
 
-        Passed over are a fix that is not newer than the last one, older than the memory, or from before
-        the first odometry.
+        Passed over are a fix that is not newer than the last one, older than the memory, from before the
+        first odometry, or from the future.
         """
         then = self._odometry.at(t_ns)
         if then is None or (self._heard_ns is not None and t_ns <= self._heard_ns):
+            return
+        if t_ns - self._odometry.newest.t_ns > self._settings.ahead_s * 1e9:
             return
         self._heard_ns = t_ns
         if self._frame is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from server.conductor.camera_views import CameraViews
 from server.conductor.carrier import Carrier
 from server.conductor.copy_errors import CopyErrors
+from server.conductor.standstill import Standstill
 from server.conductor.visits import Visits
 from server.hubs.hub import Batch
 from server.reporter import Reporter
@@ -18,8 +19,6 @@ from swarm.runtime.subscription import Received, Subscription, Subscriptions
 
 RUN_STATE_PERIOD_NS = NS_PER_S
 """A robot that has not heard it for 5 s waits; so four may be lost."""
-STUCK_AFTER_NS = 600 * NS_PER_S
-"""Twenty times the default visit of 30 s, in which a robot makes no move."""
 
 
 class Conductor:
@@ -30,12 +29,20 @@ class Conductor:
         self._trial = trial
         self._reporter = reporter
         self._moves = Subscription(topics.MOVE)
+        self._statuses = Subscription(topics.STATUS)
         self._best_paths = Subscription(topics.BEST_PATH)
         self._paths = Subscription(topics.PATH)
         self._visit_words = Subscription(topics.VISIT)
         self._observations = Subscription(topics.OBSERVATION)
         self._truths = Subscription(topics.TRUTH)
-        heard = (self._moves, self._best_paths, self._paths, self._visit_words, self._observations)
+        heard = (
+            self._moves,
+            self._statuses,
+            self._best_paths,
+            self._paths,
+            self._visit_words,
+            self._observations,
+        )
         self._subscriptions = Subscriptions(heard)
         self._feeds_while_watching = Subscriptions((*heard, self._truths))
         self._goal = Grid(experiment.arena.columns, experiment.arena.rows).goal
@@ -44,7 +51,8 @@ class Conductor:
         watched_by = {robot.id: robot.watches for robot in experiment.learners if robot.watches}
         self._copy_errors = CopyErrors(watched_by, reporter)
         self._state_due_ns = 0
-        self._moved_ns = 0
+        self._standstill = Standstill(experiment)
+        self._told_of: set[str] = set()
         self._ending = False
         self.moves = {robot.id: 0 for robot in experiment.robot}
         """Moves made so far, by robot."""
@@ -67,6 +75,8 @@ class Conductor:
         (self._feeds_while_watching if watching else self._subscriptions).put(batch.items)
         for move in self._moves.take():
             self._note_move(move, batch.t_ns)
+        for status in self._statuses.take():
+            self._note_status(status.robot, status.message.moves)
         for best in self._best_paths.take():
             self.best_path[best.robot] = best.message.length
         self._conduct_visits(batch.t_ns)
@@ -78,10 +88,16 @@ class Conductor:
     def _note_move(self, received: Received[pb.Move], t_ns: int) -> None:
         robot, move = received.robot, received.message
         self.moves[robot] = move.number
-        self._moved_ns = t_ns
+        self._standstill.moved(robot, t_ns)
+        self._told_of.discard(robot)
         self._copy_errors.moved(robot, move, received.header.t_ns)
         if move.next_state == self._goal:
             self._visits.track_ended(robot, move.track)
+
+    def _note_status(self, robot: str, moves: int) -> None:
+        """A server that was started again learns so of moves that were made before, perhaps all of them."""
+        if robot in self.moves:
+            self.moves[robot] = max(moves, self.moves[robot])
 
     def _conduct_visits(self, t_ns: int) -> None:
         for path in self._paths.take():
@@ -98,13 +114,23 @@ class Conductor:
         self._camera_views.step(self._truths.take(), self._visits.watching)
 
     def check_progress(self, t_ns: int) -> None:
-        """RunFailedError if no robot has moved for ten minutes of the run: a simulation waits for nobody."""
-        if t_ns - self._moved_ns > STUCK_AFTER_NS:
-            behind = [robot for robot, moves in self.moves.items() if moves < self._experiment.run.moves]
-            minutes = STUCK_AFTER_NS // NS_PER_S // 60
-            raise RunFailedError(
-                f"no robot has moved for {minutes} min of the run; waiting: {', '.join(behind)}"
-            )
+        """RunFailedError if a robot stands for ever: a simulation waits for nobody."""
+        standing = self._standstill.standing(self.moves, t_ns)
+        if standing:
+            raise RunFailedError(f"{', '.join(standing)}: {self._for_how_long}")
+
+    def newly_standing(self, t_ns: int) -> list[str]:
+        """A line for each robot that stands for ever, once, until it moves again; it is in the log too."""
+        standing = set(self._standstill.standing(self.moves, t_ns)) - self._told_of
+        self._told_of |= standing
+        lines = [f"{robot}: {self._for_how_long}" for robot in sorted(standing)]
+        for line in lines:
+            self._reporter.event("stands", line, pb.Event.WARNING)
+        return lines
+
+    @property
+    def _for_how_long(self) -> str:
+        return f"no move for {self._standstill.limit_s / 60:.0f} min of the run"
 
     def announce(self, phase: pb.RunState.Phase.ValueType) -> None:
         """Tell everyone the phase of the trial."""

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar
 
 from google.protobuf.message import Message
 
+from server.hubs.attendance import Attendance
+from server.hubs.clock_watch import ClockWatch
 from server.hubs.hub import Batch
 from swarm.clock import WallClock
 from swarm.config.experiment import Experiment
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
 from swarm.messages.header import Header, Item
-from swarm.messages.topics import Delivery, Topic
-from swarm.runtime.liveliness import present
+from swarm.messages.topics import Delivery, Topic, topic_of
+from swarm.runtime.liveliness import ALIVE_ROBOTS_AND_TRACKERS
 from swarm.runtime.node import LivePublisher
-from swarm.runtime.zenoh_session import Session, WireSample
+from swarm.runtime.zenoh_session import QUEUE_DEPTH, Session, WireSample
 
 M = TypeVar("M", bound=Message)
 
+NAMED_EVERY_S = 5.0
+"""Who is waited for is named so often: a person sees it, and it fills no screen."""
 EVERYTHING = ("robot/**", "tracker/**", "run/**", "server/**", "sim/**")
 
 
@@ -36,28 +43,39 @@ class LiveHub:
         self._session = session
         self._clock = clock
         self._ticks: Iterator[int] = clock.ticks(experiment.simulation.tick_s)
-        self._robots = [robot.id for robot in experiment.robot]
         self._check = check
         self._warn = warn
         self._inboxes = [session.inbox(key, Delivery.EVERY) for key in EVERYTHING]
         self._live = LivePublisher(session, clock, epoch=time.time_ns())
+        robots = [robot.id for robot in experiment.robot]
+        self._attendance = Attendance(session.presence_watch(ALIVE_ROBOTS_AND_TRACKERS), robots, self._tell)
+        self._clocks = ClockWatch(clock.speed, self._tell)
+        self._early: deque[Item] = deque(maxlen=QUEUE_DEPTH)
+        self._ended = False
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
 
     def start(self) -> None:
-        """Wait until every robot of the experiment is alive; name those that are missing."""
+        """Wait until every robot of the experiment and a tracker are there; name those that are missing.
+
+        What they send meanwhile is taken in, or Zenoh would have to wait; of it only what must not be lost
+        comes with the first batch.
+        """
         named_s = time.monotonic()
-        while missing := sorted(
-            set(self._robots) - {presence.name for presence in present(self._session, "robot")}
-        ):
+        self._attendance.look()
+        while missing := self._attendance.missing:
             self._check()
             next(self._ticks)
-            if time.monotonic() - named_s > 5.0:
+            self._early.extend(item for item in self._arrived() if _must_not_be_lost(item.key))
+            self._attendance.look()
+            if time.monotonic() - named_s > NAMED_EVERY_S:
                 named_s = time.monotonic()
                 self._warn(f"waiting for {', '.join(missing)}")
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         self._live.publish(topic, message, robot)
+        if isinstance(message, pb.RunState):
+            self._ended = message.phase == pb.RunState.ENDED
 
     def advance(self) -> None:
         """In real time the processes need no leave."""
@@ -65,21 +83,39 @@ class LiveHub:
     def gather(self) -> Batch:
         t_ns = next(self._ticks)
         self._check()
-        return Batch(t_ns, [item for inbox in self._inboxes for item in self._items(inbox.poll())])
+        if not self._ended:  # At the end everyone leaves, which is nothing to tell of.
+            self._attendance.look()
+        items = [*self._early, *self._arrived()]
+        self._early.clear()
+        self._clocks.step(items, self._clock.now_ns())
+        return Batch(t_ns, items)
 
     def unsent(self) -> Batch:
         """What has arrived by now: the server's own messages come back over the wire like any other."""
-        return Batch(
-            self._clock.now_ns(), [item for inbox in self._inboxes for item in self._items(inbox.poll())]
-        )
+        return Batch(self._clock.now_ns(), list(self._arrived()))
 
     def finish(self) -> None:
         """The run's state ENDED has told the robots already."""
 
-    def _items(self, samples: list[WireSample]) -> Iterator[Item]:
+    def _tell(self, name: str, text: str, level: pb.Event.Level.ValueType) -> None:
+        """An event in the log, and a line for whoever watches unless it is only for the log."""
+        self.publish(topics.SERVER_EVENT, pb.Event(level=level, name=name, text=text))
+        if level != pb.Event.INFO:
+            self._warn(text)
+
+    def _arrived(self) -> Iterator[Item]:
+        for inbox in self._inboxes:
+            yield from self._items(inbox.poll())
+
+    def _items(self, samples: Iterable[WireSample]) -> Iterator[Item]:
         for sample in samples:
             header = Header.unpack(sample.attachment)
             if header is None or header.t_ns < 0:
                 self.without_header += 1
             else:
                 yield Item(sample.key, header, sample.payload)
+
+
+def _must_not_be_lost(key: str) -> bool:
+    found = topic_of(key)
+    return found is not None and found[0].delivery is Delivery.EVERY

@@ -31,6 +31,9 @@ LIVE_FLUSH_S = 0.5
 """Real seconds of messages that a killed server may lose."""
 
 
+Warn = Callable[[str], None]
+
+
 @dataclass(frozen=True)
 class TrialPlan:
     """Which trial is to be played: its number, the experiment's file, where its processes print to."""
@@ -50,13 +53,13 @@ class TrialEnvironment:
     reporter: Reporter
     carrier: Carrier
     batches_between_flushes: int
+    warn: Warn
+    """Shows a line to whoever watches."""
     waits_for_people: bool = False
 
 
 Environment = Callable[[TrialPlan], AbstractContextManager[TrialEnvironment]]
 """`simulated` or `laboratory`, with all but the plan given."""
-
-Warn = Callable[[str], None]
 
 
 @contextmanager
@@ -76,7 +79,7 @@ def simulated(
         with Supervisor(specs, plan.output, spread(len(specs), cores)) as supervisor:
             hub, flush_every = _hub(experiment, session, pace, specs, supervisor.check, warn)
             reporter = Reporter(hub)
-            yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every)
+            yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every, warn)
 
 
 def _hub_settings(endpoint: str, pace: Pace) -> SessionSettings:
@@ -121,7 +124,7 @@ def laboratory(
     hub = LiveHub(session, unix_clock(), experiment, _nothing_to_check, warn)
     reporter = Reporter(hub)
     carrier = Operator(reporter, warn)
-    yield TrialEnvironment(hub, reporter, carrier, _live_flush(experiment, 1.0), waits_for_people=True)
+    yield TrialEnvironment(hub, reporter, carrier, _live_flush(experiment, 1.0), warn, waits_for_people=True)
 
 
 def _presence() -> Presence:

@@ -280,6 +280,11 @@ class Experiment:
         return min(self.simulation.ticks_per_exchange, most)
 
     @property
+    def pose_lateness_s(self) -> float:
+        """How old a simulated pose is when it leaves the tracker: it was an exchange on its way there."""
+        return self.tracker.latency_s + (self.ticks_per_exchange + 1) * self.simulation.tick_s
+
+    @property
     def learners(self) -> tuple[RobotSettings, ...]:
         return tuple(robot for robot in self.robot if robot.role is Role.LEARNER)
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from swarm.errors import UserError
 from swarm.messages.topics import ALIVE
-from swarm.runtime.zenoh_session import Session
+from swarm.runtime.zenoh_session import PresenceWatch, Session
+
+ALIVE_SERVER = "alive/server/**"
+ALIVE_ROBOTS_AND_TRACKERS = "alive/*/*/*/*"
 
 
 @dataclass(frozen=True)
@@ -47,6 +51,24 @@ def claim(session: Session, presence: Presence) -> None:
     session.declare_alive(presence.key)
     others = [other for other in present(session, presence.kind, presence.name) if other != presence]
     _refuse_if_taken(presence, [other for other in others if other.epoch <= presence.epoch])
+
+
+class ServerWatch:
+    """Says in one line each when the server that a process works with is lost, and when it is back."""
+
+    def __init__(self, watch: PresenceWatch, say: Callable[[str], None]) -> None:
+        self._watch = watch
+        self._say = say
+        self._present: set[str] = set()
+        self._lost = False
+
+    def look(self) -> None:
+        """Take in who has come and gone."""
+        for key, is_there in self._watch.poll():
+            (self._present.add if is_there else self._present.discard)(key)
+            if self._lost == bool(self._present):
+                self._lost = not self._present
+                self._say("lost the server: waiting for it" if self._lost else "resumed: the server is back")
 
 
 def _refuse_if_taken(presence: Presence, others: list[Presence]) -> None:

@@ -12,6 +12,7 @@ from google.protobuf.message import Message
 from swarm.errors import RunFailedError
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
+from swarm.runtime.liveliness import ALIVE_SERVER
 from swarm.runtime.lockstep_frames import BAD_FRAME, TICK, pack_answer, pack_item, unpack_items
 from swarm.runtime.node import Sequencer, Step
 from swarm.runtime.subscription import Subscription
@@ -77,6 +78,10 @@ class LockstepNode:
         key = topic.key(robot)
         header = Header(EPOCH, self._sequencer.following(key), self._t_ns)
         self._published.append(pack_item(key, header, message.SerializeToString()))
+
+    def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:  # noqa: ARG002
+        """All have the same time in a lockstep."""
+        return 0
 
     def run(self, step: Step) -> None:
         self._session.on_arrival(LOCKSTEP_TICK.format(process=self._process), partial(self._on_tick, step))
@@ -161,7 +166,7 @@ class LockstepNode:
             self._done.put(self._answer)
 
     def _hub_is_alive(self) -> bool:
-        return bool(self._session.alive("alive/server/**"))
+        return bool(self._session.alive(ALIVE_SERVER))
 
     def _greet(self) -> None:
         """Repeated until the first tick: a message sent right after declaring may be lost."""

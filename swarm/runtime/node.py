@@ -12,6 +12,8 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header
 from swarm.messages.topics import Topic
+from swarm.runtime.clock_offset import ClockOffset, described
+from swarm.runtime.liveliness import ALIVE_SERVER, ServerWatch
 from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Inbox, Publisher, Session
 
@@ -32,6 +34,9 @@ class Node(Protocol):
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         """Send a message under the robot's key."""
+
+    def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:
+        """What to add to the times that a topic's sender writes, to have them on this process's clock."""
 
     def run(self, step: Step) -> None:
         """Step at every tick, until the run ends.
@@ -75,8 +80,18 @@ class LivePublisher:
 class LiveNode:
     """Takes part over the network at the pace of a clock: on boards, and in simulation at a given speed."""
 
-    def __init__(self, session: Session, clock: WallClock, period_s: float, epoch: int) -> None:
+    def __init__(
+        self,
+        session: Session,
+        clock: WallClock,
+        period_s: float,
+        epoch: int,
+        say: Callable[[str], None] = lambda text: None,  # noqa: ARG005
+    ) -> None:
         self._session = session
+        self._say = say
+        self._server = ServerWatch(session.presence_watch(ALIVE_SERVER), say)
+        self._clocks: dict[str, tuple[int, ClockOffset]] = {}
         self._clock = clock
         self._period_s = period_s
         self._live = LivePublisher(session, clock, epoch)
@@ -94,15 +109,34 @@ class LiveNode:
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         self._live.publish(topic, message, robot)
 
+    def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:
+        known = self._clocks.get(topic.key(robot))
+        return known[1].ns if known else 0
+
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):
+            self._server.look()
             self._take_in()
             step(t_ns)
             if any(state.message.phase == pb.RunState.ENDED for state in self._run_states.take()):
+                self._say("finished: the run has ended")
                 return
 
     def _take_in(self) -> None:
         for inbox, subscription in self._inboxes:
             for sample in inbox.poll():
                 self.keys_received.add(sample.key)
-                subscription.put(sample.key, Header.unpack(sample.attachment), sample.payload)
+                header = Header.unpack(sample.attachment)
+                subscription.put(sample.key, self._on_own_clock(sample.key, header), sample.payload)
+
+    def _on_own_clock(self, key: str, header: Header | None) -> Header | None:
+        """A header whose time is on this clock. (A sender's clock cannot step: only its epochs differ.)"""
+        if header is None:
+            return None
+        epoch, clock = self._clocks.get(key, (0, None))
+        if clock is None or epoch != header.epoch:
+            clock = ClockOffset(self._clock.speed, can_step=False)
+            self._clocks[key] = (header.epoch, clock)
+        if clock.heard(header.t_ns, self._clock.now_ns()) and clock.ns:
+            self._say(f"warning: the clock that sends {key} is {described(clock.ns)} this one: corrected")
+        return header._replace(t_ns=header.t_ns + clock.ns)

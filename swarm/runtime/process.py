@@ -93,9 +93,9 @@ def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s:
         if arguments.lockstep:
             yield LockstepNode(session, arguments.process)
         elif arguments.started_ns:
-            yield LiveNode(session, scaled_clock(arguments.started_ns, arguments.speed), period_s, epoch)
+            yield LiveNode(session, scaled_clock(arguments.started_ns, arguments.speed), period_s, epoch, say)
         else:
-            yield LiveNode(session, unix_clock(), period_s, epoch)
+            yield LiveNode(session, unix_clock(), period_s, epoch, say)
 
 
 def leave_with_parent() -> None:

@@ -22,20 +22,63 @@ class Received(NamedTuple, Generic[M]):
     message: M
 
 
+ENDED_KEPT = 8
+"""Earlier starts of a sender that are remembered: far more than have messages on their way."""
+BACK_AFTER = 10
+"""So many messages in a row prove that a sender lives: more than were under way when another began."""
+
+
+class Senders(NamedTuple):
+    """Who sends under a key: the start that sends now, how far it is, and the starts that it followed.
+
+    Epochs only tell starts apart. Which is later shows in who was heard later: a clock may have been set back
+    between two starts. A start that ended and yet goes on alone is the one that lives.
+    """
+
+    epoch: int
+    sequence: int
+    ended: tuple[tuple[int, int], ...] = ()
+    """The epoch and last number of starts that ended, the latest last."""
+    echoes: int = 0
+    """Messages in a row of a start that ended."""
+
+    def after(self, header: Header) -> tuple[Senders, bool]:
+        """Who sends once a message has come, and whether the message is new."""
+        epoch, sequence, _ = header
+        if epoch == self.epoch:
+            if sequence <= self.sequence:
+                return self, False
+            return Senders(epoch, sequence, self.ended), True
+        heard_to = dict(self.ended).get(epoch)
+        if heard_to is None:
+            return self._followed_by(epoch, sequence), True
+        if sequence <= heard_to or self.echoes + 1 < BACK_AFTER:
+            return self._replace(echoes=self.echoes + 1), False
+        return self._followed_by(epoch, sequence), True
+
+    def _followed_by(self, epoch: int, sequence: int) -> Senders:
+        others = tuple(start for start in self.ended if start[0] != epoch)
+        ended = (*others, (self.epoch, self.sequence)) if self.epoch else others
+        return Senders(epoch, sequence, ended[-ENDED_KEPT:])
+
+
+NOBODY = Senders(0, 0)
+
+
 class Subscription(Generic[M]):
     """The messages of one topic that arrived since the last `take`.
 
     Of a `NEWEST` topic only the last of each key is kept. A message that repeats or comes before one
-    already seen from the same epoch is a duplicate; one from an older epoch is of a dead process. A bad
-    message proves nothing about its sender: it does not make those before it look dead.
+    already seen from the same start of its sender is a duplicate; one from an earlier start is of a dead
+    process. A bad message proves nothing about its sender: it does not make those before it look dead.
     """
 
     def __init__(self, topic: Topic[M]) -> None:
         self.topic = topic
         self._newest_only = topic.delivery is Delivery.NEWEST
         self._waiting: dict[object, tuple[str, Header, bytes]] = {}
-        self._seen: dict[str, tuple[int, int]] = {}
-        self._believed: dict[str, tuple[int, int]] = {}
+        self._seen: dict[str, Senders] = {}
+        self._believed: dict[str, Senders] = {}
         self.duplicates = 0
         self.bad = 0
         self.last_bad = ""
@@ -46,12 +89,12 @@ class Subscription(Generic[M]):
         if header is None:
             self._refuse(key, "it has no header")
             return
-        number = (header.epoch, header.sequence)
-        if number <= self._seen.get(key, (0, 0)):
+        seen, is_new = self._seen.get(key, NOBODY).after(header)
+        self._seen[key] = seen
+        if not is_new:
             self.duplicates += 1
             return
-        self._seen[key] = number
-        slot = key if self._newest_only else (key, number)
+        slot = key if self._newest_only else (key, header.epoch, header.sequence)
         self._waiting.pop(slot, None)
         self._waiting[slot] = (key, header, payload)
 
@@ -71,11 +114,11 @@ class Subscription(Generic[M]):
         try:
             received = Received(found[1], header, decode(self.topic.message, payload))
         except BadMessageError as error:
-            self._seen[key] = self._believed.get(key, (0, 0))
+            self._seen[key] = self._believed.get(key, NOBODY)
             self._refuse(key, str(error))
             return None
-        self._believed[key] = (header.epoch, header.sequence)
-        self._seen[key] = max(self._seen[key], self._believed[key])
+        self._believed[key] = self._believed.get(key, NOBODY).after(header)[0]
+        self._seen[key] = self._seen[key].after(header)[0]
         return received
 
     def _refuse(self, key: str, reason: str) -> None:

@@ -38,6 +38,9 @@ class LocalNode:
             if key_matches(expression, key):
                 subscription.put(key, header, message.SerializeToString())
 
+    def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:  # noqa: ARG002
+        return 0
+
     def run(self, step: Step) -> None:
         while True:
             step(self.t_ns)

@@ -146,3 +146,14 @@ def test_the_past_can_be_asked_for() -> None:
     assert now is not None
     assert earlier is not None
     assert now.distance_m(earlier) == pytest.approx(0.025, abs=5e-4)
+
+
+@pytest.mark.parametrize("ahead_s", [0.6, 3600.0, 1e9])
+def test_a_fix_from_the_future_is_passed_over_and_those_that_follow_are_not(ahead_s: float) -> None:
+    watched = Watched(PERFECT, late_ticks=1, heading_sd_rad=0.0)
+    for _ in range(10):
+        watched.tick(0.08, 0.0)
+    watched.estimator.fix(Pose(0.0, 0.0, 0.0), watched.t_ns + round(ahead_s * 1e9))
+    errors = [watched.tick(0.08, 0.5) for _ in range(20)]
+    assert max(error_m for error_m, _ in errors) < 1e-3
+    assert watched.estimator.age_s(watched.t_ns) < 0.3

@@ -88,8 +88,31 @@ def test_bad_and_unknown_messages_do_no_harm(rig: Rig) -> None:
     assert rig.conductor.moves["imitator"] == 1
 
 
-def test_a_trial_in_which_nobody_moves_is_given_up(rig: Rig) -> None:
+def test_a_robot_that_stands_for_ever_ends_a_simulation_though_others_move(rig: Rig) -> None:
+    rig.conductor.check_progress(rig.t_ns)
     rig.step(move("imitator", 10))
     rig.conductor.check_progress(rig.t_ns + 600 * NS_PER_S)
-    with pytest.raises(RunFailedError, match=r"no robot has moved for 10 min of the run; waiting:.*loner"):
-        rig.conductor.check_progress(rig.t_ns + 601 * NS_PER_S)
+    rig.t_ns += 700 * NS_PER_S
+    rig.step(move("expert", 1))
+    with pytest.raises(RunFailedError, match=r"^loner: no move for 11 min of the run$"):
+        rig.conductor.check_progress(rig.t_ns)
+
+
+def test_people_are_told_once_of_a_robot_that_stands_and_again_after_it_moved(rig: Rig) -> None:
+    assert rig.conductor.newly_standing(rig.t_ns) == []
+    rig.t_ns += 700 * NS_PER_S
+    rig.step(move("expert", 1), move("imitator", 1))
+    assert rig.conductor.newly_standing(rig.t_ns) == ["loner: no move for 11 min of the run"]
+    assert rig.conductor.newly_standing(rig.t_ns) == []
+    rig.step(move("loner", 1))
+    rig.t_ns += 700 * NS_PER_S
+    assert len(rig.conductor.newly_standing(rig.t_ns)) == 3
+    assert [message.name for key, message in rig.said if key == "server/event"] == ["stands"] * 4
+
+
+def test_moves_made_before_the_server_was_started_again_count(rig: Rig) -> None:
+    """A learner that has finished makes no move any more, but says once a second how many it made."""
+    rig.step(("robot/loner/status", pb.Status(activity="finished", moves=10).SerializeToString()))
+    assert not rig.conductor.ended
+    rig.step(move("imitator", 10))
+    assert rig.conductor.ended

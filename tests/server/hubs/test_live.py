@@ -1,0 +1,136 @@
+"""The live hub: who is late, who goes and comes back, and whose clock is wrong."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from server.hubs.live import LiveHub
+from swarm.clock import NS_PER_S, unix_clock
+from swarm.config.experiment import Experiment
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
+from swarm.messages.header import Header
+from swarm.messages.topics import Delivery
+from swarm.runtime.liveliness import Presence, claim
+from swarm.runtime.zenoh_session import MOST_AT_ONCE, QUEUE_DEPTH, Session, SessionSettings, WireSample
+from tests.support.endpoints import free_endpoint
+from tests.support.swarm_runs import experiment_text, learners, write_experiment
+
+HOUR_NS = 3600 * NS_PER_S
+
+
+class Laboratory:
+    """A live hub, and sessions that pretend to be robots and a tracker."""
+
+    def __init__(self, directory: Path, stack: ExitStack) -> None:
+        self._stack = stack
+        self._endpoint = free_endpoint()
+        experiment = Experiment.load(write_experiment(directory, experiment_text(learners(2))))
+        hub_session = stack.enter_context(Session(SessionSettings(self._endpoint, hub=True)))
+        self.said: list[str] = []
+        self.hub = LiveHub(hub_session, unix_clock(), experiment, lambda: None, self.said.append)
+
+    def joins(self, kind: str, name: str, epoch: int = 1) -> Session:
+        session = self._stack.enter_context(Session(SessionSettings(self._endpoint)))
+        claim(session, Presence(kind, name, "board", epoch))
+        return session
+
+    def hears_until(self, condition: Callable[[], bool]) -> dict[str, list[bytes]]:
+        """All payloads by key, until a condition holds."""
+        heard: dict[str, list[bytes]] = {}
+        while not condition():
+            for item in self.hub.gather().items:
+                heard.setdefault(item.key, []).append(item.payload)
+        return heard
+
+    def events(self, heard: dict[str, list[bytes]]) -> list[str]:
+        return [pb.Event.FromString(payload).name for payload in heard.get("server/event", [])]
+
+
+@pytest.fixture
+def laboratory(tmp_path: Path) -> Iterator[Laboratory]:
+    with ExitStack() as stack:
+        yield Laboratory(tmp_path, stack)
+
+
+def test_a_run_begins_although_one_robot_is_late_and_the_others_talk(laboratory: Laboratory) -> None:
+    laboratory.joins("tracker", "bridge")
+    early = laboratory.joins("robot", "r0")
+    waiting = threading.Thread(target=laboratory.hub.start)
+    waiting.start()
+    early.publisher("robot/r0/path", Delivery.EVERY).put(b"given", attachment=Header(1, 1, 0).pack())
+    talk = early.publisher("robot/r0/command", Delivery.EVERY)
+    for number in range(QUEUE_DEPTH + 20_000):
+        talk.put(b"", attachment=Header(1, number + 1, number).pack())
+    assert waiting.is_alive()
+    laboratory.joins("robot", "r1")
+    waiting.join()
+    path = early.publisher("robot/r0/path", Delivery.EVERY)
+    path.put(b"late", attachment=Header(1, 2, 0).pack())
+    heard: dict[str, list[bytes]] = {}
+    while b"late" not in heard.get("robot/r0/path", []):
+        for item in laboratory.hub.gather().items:
+            heard.setdefault(item.key, []).append(item.payload)
+    assert heard["robot/r0/path"] == [b"given", b"late"], "what must not be lost is in the first batch"
+
+
+def test_a_poll_is_bounded_and_loses_nothing(laboratory: Laboratory) -> None:
+    session = laboratory.joins("robot", "r0")
+    inbox = session.inbox("flood", Delivery.EVERY)
+    flood = session.publisher("flood", Delivery.EVERY)
+    for number in range(3 * MOST_AT_ONCE):
+        flood.put(str(number).encode())
+    polls: list[list[WireSample]] = []
+    while sum(map(len, polls)) < 3 * MOST_AT_ONCE:
+        polls.append(inbox.poll())
+    assert max(map(len, polls)) <= MOST_AT_ONCE
+    assert [sample.payload for poll in polls for sample in poll] == [
+        str(number).encode() for number in range(3 * MOST_AT_ONCE)
+    ]
+
+
+def test_who_goes_and_comes_back_is_told_in_one_line_each(laboratory: Laboratory) -> None:
+    tracker, first = laboratory.joins("tracker", "bridge"), laboratory.joins("robot", "r0")
+    laboratory.joins("robot", "r1")
+    laboratory.hub.start()
+    first.close()
+    heard = laboratory.hears_until(lambda: len(laboratory.said) == 1)
+    tracker.close()
+    laboratory.hears_until(lambda: len(laboratory.said) == 2)
+    laboratory.joins("robot", "r0", epoch=2)
+    heard = laboratory.hears_until(lambda: len(laboratory.said) == 3)
+    gone = "is gone: its process on host board ended, hangs or lost its connection"
+    assert laboratory.said == [f"r0 {gone}", f"the tracker bridge {gone}", "r0 is back, on host board"]
+    while "back" not in laboratory.events(heard):
+        for item in laboratory.hub.gather().items:
+            heard.setdefault(item.key, []).append(item.payload)
+
+
+def test_a_clock_that_is_an_hour_ahead_is_measured_and_told_of(laboratory: Laboratory) -> None:
+    laboratory.joins("tracker", "bridge")
+    robots = [laboratory.joins("robot", name) for name in ("r0", "r1")]
+    laboratory.hub.start()
+    statuses = [
+        robot.publisher(topics.STATUS.key(f"r{number}"), Delivery.EVERY)
+        for number, robot in enumerate(robots)
+    ]
+    status = pb.Status(activity="waiting").SerializeToString()
+    sequence = 0
+    while not laboratory.said:
+        sequence += 1
+        for publisher, ahead_ns in zip(statuses, (HOUR_NS, 0), strict=True):
+            header = Header(1, sequence, time.time_ns() + ahead_ns)
+            publisher.put(status, attachment=header.pack())
+        laboratory.hub.gather()
+    (line,) = laboratory.said
+    measured_s = float(line.split()[5])
+    assert 3590.0 < measured_s <= 3600.0, "less by as long as the quickest message took"
+    assert line == (
+        f"the clock of r0 is {measured_s:.1f} s ahead of the server's: let its host follow a time server"
+    )

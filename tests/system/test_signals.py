@@ -1,0 +1,143 @@
+"""Told to leave at any instant: no process left, no traceback, a log that is closed, and the exit code."""
+
+from __future__ import annotations
+
+import os
+import random
+import select
+import signal
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from swarm.logs.reader import LogReader
+from tests.support.swarm_runs import ROOT, experiment_text, server_command, write_experiment
+
+LONG = 1_000_000
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+LATEST_S = 3.0
+"""By then a run of three robots is well under way."""
+INTERPRETER_S = 0.05
+"""Python itself starts within this: what it does with a signal is not ours."""
+
+
+@dataclass(frozen=True)
+class Telling:
+    """Which signal comes when, and how the server was called."""
+
+    number: signal.Signals
+    after_s: float
+    options: tuple[str, ...]
+
+
+def tellings(count: int, seed: int) -> list[Telling]:
+    """Instants from the start of our own code on: half of them while everything is being started."""
+    chosen = random.Random(seed)
+    found = []
+    for number in range(count):
+        latest_s = LATEST_S if number % 2 else LATEST_S / 3
+        after_s = chosen.uniform(INTERPRETER_S, latest_s)
+        options = ((), ("--speed", "20"))[number // 2 % 2]
+        found.append(Telling(chosen.choice(SIGNALS), after_s, options))
+    return found
+
+
+def left_behind(marker: str) -> list[str]:
+    """The command lines of processes that name the run."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                words = (entry / "cmdline").read_bytes().decode(errors="replace").replace("\0", " ")
+            except OSError:
+                continue
+            if marker in words and int(entry.name) != os.getpid():
+                found.append(words)
+    return found
+
+
+def check_leaving(telling: Telling, directory: Path) -> None:
+    experiment = write_experiment(directory, experiment_text(moves=LONG))
+    out = directory / "run"
+    server = subprocess.Popen(
+        server_command(experiment, out, *telling.options),
+        cwd=ROOT,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(telling.after_s)
+    server.send_signal(telling.number)
+    said = server.communicate()[1]
+    assert server.returncode in (128 + telling.number, -telling.number), (telling, said)
+    assert "Traceback" not in said, (telling, said)
+    assert not left_behind(str(directory)), telling
+    for output in out.glob("output/*/*.log"):
+        assert "Traceback" not in output.read_text(), (telling, output.read_text())
+    for log in out.glob("*.mcap"):
+        reader = LogReader(log)
+        for _ in reader.parts():
+            pass
+        assert not reader.damage, (telling, reader.damage)
+        assert reader.recorded_messages == reader.messages, telling
+
+
+@pytest.mark.parametrize("telling", tellings(6, seed=1), ids=str)
+def test_a_run_leaves_nothing_behind_whenever_it_is_told_to_leave(telling: Telling, tmp_path: Path) -> None:
+    check_leaving(telling, tmp_path)
+
+
+@pytest.mark.faults
+@pytest.mark.parametrize("telling", tellings(100, seed=2), ids=str)
+def test_a_hundred_instants(telling: Telling, tmp_path: Path) -> None:
+    check_leaving(telling, tmp_path)
+
+
+def test_told_twice_it_still_ends_in_order(tmp_path: Path) -> None:
+    """Ctrl-C again, while the processes are being ended."""
+    experiment = write_experiment(tmp_path, experiment_text(moves=LONG))
+    server = subprocess.Popen(
+        server_command(experiment, tmp_path / "run"), cwd=ROOT, stderr=subprocess.PIPE, text=True
+    )
+    log = tmp_path / "run" / "trial-000.mcap"
+    while not log.exists():
+        os.sched_yield()
+    server.send_signal(signal.SIGINT)
+    while server.poll() is None:
+        server.send_signal(signal.SIGTERM)
+        time.sleep(0.001)
+    assert "Traceback" not in server.communicate()[1]
+    assert server.returncode == 128 + signal.SIGINT
+    assert not left_behind(str(tmp_path))
+
+
+@pytest.mark.parametrize("options", [(), ("--speed", "20")], ids=["lockstep", "speed"])
+@pytest.mark.parametrize("stopped", [False, True], ids=["running", "stopped"])
+def test_a_killed_server_takes_its_processes_with_it(
+    options: tuple[str, ...], stopped: bool, tmp_path: Path
+) -> None:
+    experiment = write_experiment(tmp_path, experiment_text(moves=LONG))
+    server = subprocess.Popen(
+        server_command(experiment, tmp_path / "run", *options), cwd=ROOT, stderr=subprocess.DEVNULL
+    )
+    log = tmp_path / "run" / "trial-000.mcap"
+    while not log.exists() or len(children(server.pid)) < 4:
+        os.sched_yield()
+    handles = {pid: os.pidfd_open(pid) for pid in children(server.pid)}
+    if stopped:
+        os.kill(min(handles), signal.SIGSTOP)
+    server.kill()
+    server.wait()
+    for handle in handles.values():
+        select.select([handle], [], [])  # Readable at the end of the process, which is not our own child.
+        os.close(handle)
+
+
+def children(pid: int) -> list[int]:
+    """The processes that a process has started."""
+    tasks = Path(f"/proc/{pid}/task").iterdir()
+    return [int(child) for task in tasks for child in (task / "children").read_text().split()]
