@@ -59,8 +59,8 @@ def signals_held() -> Iterator[None]:
 
 
 def _ignore() -> None:
-    for number in LEAVING:
-        signal.signal(number, signal.SIG_IGN)
+    """By a handler of our own: of SIG_IGN Python complains if a signal is already on its way."""
+    _handle(lambda number, frame: None)  # noqa: ARG005
 
 
 def _handle(handler: Handler) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
+import os
+import sys
 import threading
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from typing import Generic, NoReturn, TypeVar
 
 T = TypeVar("T")
 
@@ -19,10 +22,21 @@ def in_background(call: Callable[[], T], waiting: Callable[[], None]) -> T:
     """
     attempt = _Attempt(call)
     threading.Thread(target=attempt.make, daemon=True).start()
-    if not attempt.done.wait(MOMENT_S):
-        waiting()
-        attempt.done.wait()
+    try:
+        if not attempt.done.wait(MOMENT_S):
+            waiting()
+            attempt.done.wait()
+    except SystemExit as leaving:
+        atexit.register(_end, leaving.code)
+        raise
     return attempt.outcome()
+
+
+def _end(code: str | int | None) -> NoReturn:
+    """End without Python's own last steps, in which a thread that comes back from Rust would abort."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code if isinstance(code, int) else 1)
 
 
 class _Attempt(Generic[T]):

@@ -6,6 +6,7 @@ The command line is argparse with one-line errors, so that a board needs no extr
 from __future__ import annotations
 
 import argparse
+import ctypes
 import os
 import signal
 import socket
@@ -13,7 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
@@ -28,6 +29,8 @@ from swarm.runtime.zenoh_session import Session, SessionSettings
 from swarm.version import version_text
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+PR_SET_PDEATHSIG = 1
+"""From linux/prctl.h: the signal that a process gets when its parent ends."""
 LEAVE_WITHIN_S = 5.0
 """A process leaves after its step, which takes far less; one that has not by then hangs."""
 
@@ -101,8 +104,11 @@ def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s:
 def leave_with_parent() -> None:
     """Leave as soon as standard input ends: whoever started this process holds it open, alive or not at all.
 
-    (A pipe ends with its writer on every system; Linux's PR_SET_PDEATHSIG would follow a thread.)
+    A pipe ends with its writer on every system. A process that was stopped does not see it: on Linux the end
+    of its parent lets it go on.
     """
+    with suppress(AttributeError):
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGCONT)
     threading.Thread(target=_await_parents_end, daemon=True).start()
 
 
