@@ -41,7 +41,6 @@ def obeying_signals() -> Iterator[None]:
         yield
     finally:
         _ignore()
-        signal.pthread_sigmask(signal.SIG_BLOCK, LEAVING)  # Python's last steps put back what kills.
 
 
 @contextmanager

