@@ -24,8 +24,8 @@ from swarm.learning.q_table import QTable
 from swarm.learning.random import spawned_generator
 from swarm.messages.topics import is_id
 
-NonNegative = Between(0)
-
+OLDEST_POSE_S = 0.9
+"""A tenth below the second at which a robot stands for want of a newer pose."""
 BEYOND_CORNER_M = 0.05
 """So far in x and in y: the observer's body, of 0.035 m radius, is wholly outside the compartment."""
 
@@ -97,8 +97,8 @@ class BodySettings:
     """Standard deviation of each wheel's relative slip in a tenth of a second."""
     gain_error_sd: Annotated[float, Between(0, 0.5)] = 0.015
     """Standard deviation of each wheel's relative error in size."""
-    latency_s: Annotated[float, Between(0, 1)] = 0.06
-    """From a command to its effect."""
+    latency_s: Annotated[float, Between(0, 0.2)] = 0.06
+    """From a command to its effect; robots that obey later than two ticks turn too far and never arrive."""
 
 
 @dataclass(frozen=True)
@@ -107,19 +107,19 @@ class TrackerSettings:
 
     backend: str = "sim"
     """The tracking system; see how-to-add-a-tracker.md."""
-    rate_hz: Annotated[float, Between(0.1, 1000)] = 10.0
-    """Poses of each robot a second."""
-    noise_m: Annotated[float, NonNegative] = 0.001
+    rate_hz: Annotated[float, Between(1, 1000)] = 10.0
+    """Poses of each robot a second; a robot stands when the last is 1 s old."""
+    noise_m: Annotated[float, Between(0, 0.05)] = 0.001
     """Standard deviation of x and of y."""
-    noise_rad: Annotated[float, NonNegative] = 0.0087
+    noise_rad: Annotated[float, Between(0, 1)] = 0.0087
     """Standard deviation of the heading."""
-    latency_s: Annotated[float, Between(0, 5)] = 0.06
+    latency_s: Annotated[float, Between(0, 0.5)] = 0.06
     """At least this late; in lockstep a pose arrives two exchanges after it was true."""
-    loss: Annotated[float, Between(0, 1)] = 0.02
+    loss: Annotated[float, Between(0, 0.9)] = 0.02
     """Share of poses that are missing."""
-    blackouts_per_hour: Annotated[float, NonNegative] = 10.0
+    blackouts_per_hour: Annotated[float, Between(0, 600)] = 10.0
     """Longer losses of one robot."""
-    blackout_s: Annotated[float, NonNegative] = 3.0
+    blackout_s: Annotated[float, Between(0, 60)] = 3.0
     """How long such a loss lasts."""
 
 
@@ -164,11 +164,12 @@ class CameraSettings:
 class SimulationSettings:
     """[simulation]: the length of a tick and the number of processes for the robots."""
 
-    tick_s: Annotated[float, Between(0.01, 1)] = 0.1
+    tick_s: Annotated[float, Between(0.01, 0.2)] = 0.1
     """Control period of every robot, and the length of a lockstep tick."""
     ticks_per_exchange: Annotated[int, Between(1, 10)] = 2
     """Ticks that the processes of a lockstep make before they exchange messages; fewer if a camera takes more
-    frames. A pose comes two exchanges late, 0.4 s; with 1 it is 0.2 s, and a run takes half as long again."""
+    frames, or if poses would come too late to drive by. A pose comes two exchanges late, 0.4 s; with 1 it is
+    0.2 s, and a run takes half as long again."""
     processes: Annotated[int, Between(0, 1000)] = 0
     """Processes that host the robots; 0 gives each robot its own, as on hardware."""
 
@@ -273,11 +274,15 @@ class Experiment:
 
     @property
     def ticks_per_exchange(self) -> int:
-        """As in the settings; with cameras at most those between two frames, which would else be the same."""
+        """As in the settings, but no more than a pose may be late by, which takes two exchanges to arrive.
+
+        With cameras also at most those between two frames, which would else be the same.
+        """
+        in_time = math.floor((OLDEST_POSE_S - self.tracker.latency_s) / (2 * self.simulation.tick_s) + 1e-9)
         between_frames = math.floor(1 / (self.visits.frames_per_s * self.simulation.tick_s) + 1e-9)
         watched = any(robot.watches for robot in self.robot)
-        most = max(1, between_frames) if watched else self.simulation.ticks_per_exchange
-        return min(self.simulation.ticks_per_exchange, most)
+        most = min(in_time, between_frames) if watched else in_time
+        return min(self.simulation.ticks_per_exchange, max(1, most))
 
     @property
     def pose_lateness_s(self) -> float:

@@ -16,7 +16,7 @@ import pytest
 
 from robot_agent.checkpoint import Checkpoint
 from server.hubs.live import LiveHub
-from swarm.clock import scaled_clock
+from swarm.clock import NS_PER_S, scaled_clock
 from swarm.config.experiment import Experiment
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
@@ -46,7 +46,8 @@ def test_a_scaled_run_ends_with_every_move_in_the_log(tmp_path: Path) -> None:
 class LiveSwarm:
     """A hub in this process; the tracker bridge and the agent are processes of their own."""
 
-    def __init__(self, directory: Path, stack: ExitStack) -> None:
+    def __init__(self, directory: Path, stack: ExitStack, speed: float = SPEED) -> None:
+        self._speed = speed
         self.file = write_experiment(directory, experiment_text(learners(1), moves=1000))
         self.directory = directory
         self.endpoint = free_endpoint()
@@ -54,14 +55,15 @@ class LiveSwarm:
         self._started_ns = time.monotonic_ns()
         self.session = stack.enter_context(Session(SessionSettings(self.endpoint, hub=True)))
         claim(self.session, Presence("server", "server", "here", 1))
-        clock = scaled_clock(self._started_ns, SPEED)
+        clock = scaled_clock(self._started_ns, speed)
         self.processes: list[subprocess.Popen[bytes]] = []
         self.hub = LiveHub(self.session, clock, Experiment.load(self.file), self.check, print)
         self._batches = 0
 
-    def start(self, module: str, *arguments: str) -> subprocess.Popen[bytes]:
-        """A process of the swarm, ended with the test."""
-        pace = ("--started-ns", str(self._started_ns), "--speed", str(SPEED))
+    def start(self, module: str, *arguments: str, ahead_s: float = 0.0) -> subprocess.Popen[bytes]:
+        """A process of the swarm, ended with the test, whose clock is so far ahead of the server's."""
+        started_ns = self._started_ns - round(ahead_s / self._speed * NS_PER_S)
+        pace = ("--started-ns", str(started_ns), "--speed", str(self._speed))
         command = [
             sys.executable,
             "-m",
@@ -77,8 +79,9 @@ class LiveSwarm:
         self.processes.append(process)
         return process
 
-    def start_agent(self) -> subprocess.Popen[bytes]:
-        return self.start("robot_agent", "--robot", "r0", "--state", str(self.directory / "state"))
+    def start_agent(self, ahead_s: float = 0.0) -> subprocess.Popen[bytes]:
+        state = str(self.directory / "state")
+        return self.start("robot_agent", "--robot", "r0", "--state", state, ahead_s=ahead_s)
 
     def check(self) -> None:
         """Nobody may die by itself."""
@@ -157,3 +160,20 @@ def test_corrupt_messages_are_counted_and_nothing_dies(swarm: LiveSwarm) -> None
     assert numbers == list(range(numbers[0], numbers[0] + 5)), "poses are still believed, and moves made"
     assert swarm.hub.without_header >= 1
     swarm.check()
+
+
+@pytest.mark.parametrize(
+    ("agent_ahead_s", "tracker_ahead_s"), [(3600.0, 0.0), (1.2, 0.0), (0.0, 3600.0), (0.0, -3.0)]
+)
+def test_robots_move_whatever_the_clocks_of_the_hosts_say(
+    agent_ahead_s: float, tracker_ahead_s: float, tmp_path: Path
+) -> None:
+    """In real time, since what is tolerated is real time too."""
+    with ExitStack() as stack:
+        swarm = LiveSwarm(tmp_path, stack, speed=1.0)
+        stack.callback(swarm.session.close)
+        swarm.start("tracker_bridge", ahead_s=tracker_ahead_s)
+        swarm.start_agent(agent_ahead_s)
+        moves = swarm.received(topics.MOVE)
+        numbers = [next(moves)[1].number for _ in range(3)]
+    assert numbers == [1, 2, 3]

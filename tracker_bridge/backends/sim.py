@@ -18,6 +18,8 @@ from tracker_bridge.backends.interface import TrackedPose
 SECONDS_PER_HOUR = 3600.0
 STACK = 256
 """Draws made at once: the cost of a call to numpy no longer counts."""
+AHEAD_NS = 60 * NS_PER_S
+"""What is true in the far future comes from a host whose clock is not known yet, and would be waited for."""
 
 
 class _SimulatedView:
@@ -75,6 +77,8 @@ class SimulatedTracker:
     def poses(self, t_ns: int) -> list[TrackedPose]:
         for received in self._truths():
             captured_t_ns = received.header.t_ns
+            if captured_t_ns - t_ns > AHEAD_NS:
+                continue
             pose = self._view(received.robot).measure(received.message, captured_t_ns)
             if pose:
                 tracked = TrackedPose(received.robot, pose, captured_t_ns)
