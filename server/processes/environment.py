@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -14,9 +16,10 @@ from server.conductor.carrier import Carrier, Operator, SimulatedCarrier
 from server.hubs.hub import Hub
 from server.hubs.live import LiveHub
 from server.hubs.lockstep import LockstepHub
-from server.processes.cpu_affinity import keeping_to, spread
+from server.processes.cpu_affinity import keeping_to, place, spread
+from server.processes.placement_probe import PlacementProbe
 from server.processes.run_table import Pace, run_table
-from server.processes.supervisor import ProcessSpec, Supervisor
+from server.processes.supervisor import Supervisor
 from server.reporter import Reporter
 from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import Experiment
@@ -74,7 +77,9 @@ def simulated(
         specs = run_table(experiment, plan.file, endpoint, plan.trial, pace, plan.output)
         claim(session, _presence())
         with Supervisor(specs, plan.output, spread(len(specs), cores)) as supervisor:
-            hub, flush_every = _hub(experiment, session, pace, specs, supervisor.check, warn)
+            core_of = {os.getpid(): cores[0], **supervisor.core_of}
+            probe = PlacementProbe(partial(place, core_of, cores))
+            hub, flush_every = _hub(experiment, session, pace, supervisor, warn, probe)
             reporter = Reporter(hub)
             yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every)
 
@@ -88,17 +93,26 @@ def _hub(
     experiment: Experiment,
     session: Session,
     pace: Pace,
-    specs: list[ProcessSpec],
-    check: Callable[[], None],
+    supervisor: Supervisor,
     warn: Warn,
+    probe: PlacementProbe,
 ) -> tuple[Hub, int]:
     """The hub of a pace, and how many of its batches come between two flushes."""
     if not pace.lockstep:
         clock = scaled_clock(pace.started_ns, pace.speed)
-        return LiveHub(session, clock, experiment, check, warn), _live_flush(experiment, pace.speed)
-    names, ticks = [spec.name for spec in specs], experiment.ticks_per_exchange
+        live = LiveHub(session, clock, experiment, supervisor.check, warn)
+        return live, _live_flush(experiment, pace.speed)
+    names, ticks = list(supervisor.pids), experiment.ticks_per_exchange
     tick_s = experiment.simulation.tick_s
-    hub = LockstepHub(session, names, tick_s, check, warn, ticks_per_exchange=ticks)
+    hub = LockstepHub(
+        session,
+        names,
+        tick_s,
+        supervisor.check,
+        warn,
+        ticks_per_exchange=ticks,
+        exchanged=probe.exchanged,
+    )
     return hub, LOCKSTEP_BATCHES_BETWEEN_FLUSHES // ticks
 
 
