@@ -2,7 +2,7 @@
 
 Three learners in three processes run alone, beside two processes that only count, and beside another such
 swarm, in turn, so that whatever else the machine does is as bad for each.
-`python -m tests.benchmarks.busy_machine [--rounds N] [--moves N]` prints one JSON line: real-time factors, and
+`python -m tests.benchmarks.busy_machine [--rounds N] [--moves N]` prints one JSON line: real-time factors and
 the medians' ratios to the quiet speed.
 """
 
@@ -46,9 +46,7 @@ def main() -> None:
 def _side_by_side(experiment: Path, out: Path, swarms: int) -> list[float]:
     """The real-time factors of so many runs at once."""
     running = [_started(experiment, out.with_name(f"{out.name}-{number}")) for number in range(swarms)]
-    results: list[dict[str, Any]] = [
-        json.loads(process.communicate()[0].splitlines()[-1]) for process in running
-    ]
+    results = [json.loads(process.communicate()[0].splitlines()[-1]) for process in running]
     return [result["real_time_factor"] for result in results]
 
 
