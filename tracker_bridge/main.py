@@ -1,67 +1,60 @@
-"""The `tracker-bridge` command: the process beside the tracking system."""
+"""The `tracker-bridge` command: the process beside the tracking system, and what helps to set it up."""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
-from functools import partial
+from importlib import import_module
 
-from swarm import keys
-from swarm.errors import UserError, nearest
-from swarm.experiment import Experiment
 from swarm.guard import guarded
-from swarm.learning.random import spawned_generator
-from swarm.link import Link
 from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals, load_experiment
-from tracker_bridge.backends.backend import Backend
-from tracker_bridge.backends.sim import SimulatedTracker
+from tracker_bridge.backends.backend import Setup
+from tracker_bridge.backends.registry import system_named
 from tracker_bridge.bridge import Bridge
+from tracker_bridge.commands import VERBS
 from tracker_bridge.gate import Gate, GateSettings
 
 
 def main() -> None:
     """Entry point of `tracker-bridge`."""
-    sys.exit(guarded(lambda: run(_parser().parse_args())))
+    sys.exit(guarded(lambda: call(sys.argv[1:])))
+
+
+def call(words: list[str]) -> None:
+    """Do what a verb says, or, without one, pass poses on."""
+    if not words or words[0] not in VERBS:
+        run(_parser().parse_args(words))
+        return
+    verb = import_module(f"tracker_bridge.commands.{words[0]}")
+    parser = OneLineParser(prog=f"tracker-bridge {words[0]}", description=VERBS[words[0]])
+    verb.add_arguments(parser)
+    verb.run(parser.parse_args(words[1:]))
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and pass poses on until the run ends or the process is told to leave."""
     experiment = load_experiment(arguments)
-    make_backend = _backend_named(experiment.tracker.backend)
+    system = system_named(experiment.tracker.backend)
     leave_on_signals()
-    with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s) as link:
-        backend = make_backend(experiment, link, arguments.trial)
+    period_s = system.poll_s or experiment.simulation.tick_s
+    with (
+        joined(arguments, "tracker", ["bridge"], period_s) as link,
+        system.open(Setup(experiment, link, arguments.trial)) as backend,
+    ):
         arena = experiment.arena
         gate = Gate(GateSettings(arena.width_m, arena.height_m))
         bridge = Bridge(backend, gate, link, [robot.id for robot in experiment.robot])
         link.run(bridge.step)
 
 
-MakeBackend = Callable[[Experiment, Link, int], Backend]
-
-
-def _simulated(experiment: Experiment, link: Link, trial: int) -> Backend:
-    truths = link.subscribe(keys.TRUTH)
-    generator = partial(spawned_generator, experiment.run.seed, "", trial, component="tracker")
-    return SimulatedTracker(experiment.tracker, truths.take, lambda robot: generator(robot=robot))
-
-
-BACKENDS: dict[str, MakeBackend] = {"sim": _simulated}
-"""[tracker] backend: a new tracking system adds one line."""
-
-
-def _backend_named(name: str) -> MakeBackend:
-    if name not in BACKENDS:
-        raise UserError(f"[tracker] backend is {name!r}; {nearest(name, BACKENDS)}")
-    return BACKENDS[name]
-
-
 def _parser() -> OneLineParser:
+    verbs = "\n".join(f"  tracker-bridge {verb:<10} {meaning}" for verb, meaning in VERBS.items())
     parser = OneLineParser(
         prog="tracker-bridge",
-        description="The process beside the tracking system: it tells each robot where that robot is, and no "
-        "other. The experiment's [tracker] table says which tracking system it is.",
+        description="The process beside the tracking system: it tells each robot where that robot is, and no\n"
+        "other. The experiment's [tracker] table says which tracking system it is.\n\nTo set it up:\n"
+        + verbs,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add_common_arguments(parser)
     return parser

@@ -1,0 +1,52 @@
+"""The poses of a run's log, as they were published: already in the arena frame."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from swarm import keys
+from swarm.errors import UserError
+from swarm.geometry import Pose
+from swarm.messages import swarm_pb2 as pb
+from tracker_bridge.backends.backend import TrackedPose
+
+MAGIC = b"\x89MCAP"
+
+
+def is_log(path: Path) -> bool:
+    """Whether a file begins as an MCAP file does."""
+    try:
+        with path.open("rb") as file:
+            return file.read(len(MAGIC)) == MAGIC
+    except OSError:
+        return False
+
+
+def read_log(path: Path) -> list[TrackedPose]:
+    """Every pose, in the order of capture; UserError if there is none, or what reads logs is not installed."""
+    try:
+        from swarm.analysis.log_reader import LogReader
+    except ImportError as error:
+        raise UserError(
+            f"{path}: logs are read by the lab extra: pip install 'swarm-runtime[lab]'"
+        ) from error
+    parts = LogReader(path, lambda channel: channel.topic is keys.POSE).parts()
+    found = [
+        _tracked(part.channel.sender, pb.Pose.FromString(payload))
+        for part in parts
+        for payload in part.payloads
+    ]
+    if not found:
+        raise UserError(f"{path}: there are no poses in this log")
+    return sorted(found, key=lambda tracked: tracked.captured_t_ns)
+
+
+def _tracked(robot: str, pose: pb.Pose) -> TrackedPose:
+    return TrackedPose(
+        robot,
+        Pose(pose.x_m, pose.y_m, pose.theta_rad),
+        pose.captured_t_ns,
+        source_t_ns=pose.source_t_ns,
+        residual_m=pose.residual_m,
+        quality=pose.quality,
+    )
