@@ -146,7 +146,7 @@ class Gate:
             poses.popleft()
 
     def _reachable(self, earlier: deque[TrackedPose], later: TrackedPose) -> bool:
-        """Whether it could have driven there, from the last of some poses and from the first in the window."""
+        """Whether it could have driven there, from the last pose and from the first in the window."""
         return not earlier or all(self._in_reach(pose, later) for pose in (earlier[-1], earlier[0]))
 
     def _in_reach(self, earlier: TrackedPose, later: TrackedPose) -> bool:

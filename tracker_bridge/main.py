@@ -51,9 +51,8 @@ def _parser() -> OneLineParser:
     verbs = "\n".join(f"  tracker-bridge {verb:<10} {meaning}" for verb, meaning in VERBS.items())
     parser = OneLineParser(
         prog="tracker-bridge",
-        description="The process beside the tracking system: it tells each robot where that robot is, and no\n"
-        "other. The experiment's [tracker] table says which tracking system it is.\n\nTo set it up:\n"
-        + verbs,
+        description="The process beside the tracking system: it tells each robot where that robot is.\n"
+        "The experiment's [tracker] table says which system it is.\n\nTo set it up:\n" + verbs,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add_common_arguments(parser)

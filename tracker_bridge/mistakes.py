@@ -22,7 +22,7 @@ AGREES, DISAGREES = 0.9, 0.6
 LEANS_RAD = 0.5
 """No robot that stands on a floor leans by 29 degrees."""
 FLAT_M, HIGH_M = 0.03, 0.15
-"""Heights on one floor differ by less than the first; over an arena, robots spread by more than the second."""
+"""Heights on one floor differ by less than the first; places in an arena, by more than the second."""
 TURNED_RAD = 0.35
 """A marker hat is put on straight within 20 degrees."""
 
@@ -42,12 +42,9 @@ def likely_mistake(pose: Pose, width_m: float, height_m: float) -> str:
 
 def likely_mistakes(poses: Sequence[TrackedPose], width_m: float, height_m: float) -> list[str]:
     """Every mistake that some seconds of poses suggest, each with its cure."""
-    outside = (
-        likely_mistake(tracked.pose, width_m, height_m)
-        for tracked in poses
-        if _is_out(tracked.pose, width_m, height_m)
-    )
-    found = [f"unit_m, origin_m or axes: {question}" for question in dict.fromkeys(outside) if question]
+    outside = [tracked.pose for tracked in poses if _is_out(tracked.pose, width_m, height_m)]
+    questions = dict.fromkeys(likely_mistake(pose, width_m, height_m) for pose in outside)
+    found = [f"unit_m, origin_m or axes: {question}" for question in questions if question]
     if any(abs(tracked.pose.theta_rad) > math.tau for tracked in poses):
         found.append("headings beyond a full turn: are they in degrees?")
     if _other_axis_is_up(poses):
@@ -56,7 +53,7 @@ def likely_mistakes(poses: Sequence[TrackedPose], width_m: float, height_m: floa
     if tilts_rad and median(tilts_rad) > LEANS_RAD:
         degrees = math.degrees(median(tilts_rad))
         found.append(
-            f"robots lean by {degrees:.0f} degrees: is another axis up, or is a rotation vector read as angles?"
+            f"robots lean by {degrees:.0f} degrees: is another axis up, or a rotation vector read as angles?"
         )
     return found + _heading_mistakes(poses)
 
@@ -74,7 +71,7 @@ def _other_axis_is_up(poses: Sequence[TrackedPose]) -> bool:
 
 
 def _heading_mistakes(poses: Sequence[TrackedPose]) -> list[str]:
-    """From where robots face against where they go; both ways count alike, since robots can drive backwards."""
+    """Where robots face against where they go; both ways count alike, since robots can drive backwards."""
     steps = [step for robot in {tracked.robot for tracked in poses} for step in _steps(_of(robot, poses))]
     if len(steps) < FEWEST_STEPS:
         return []
@@ -84,9 +81,8 @@ def _heading_mistakes(poses: Sequence[TrackedPose]) -> list[str]:
         return ["headings turn against the motion: is one axis mirrored?"]
     turn_rad = cmath.phase(direct) / 2
     if abs(direct) > AGREES and abs(turn_rad) > TURNED_RAD:
-        return [
-            f"robots drive {math.degrees(turn_rad):.0f} degrees off their heading: body_turn_rad = {turn_rad:.2f}?"
-        ]
+        degrees = math.degrees(turn_rad)
+        return [f"robots drive {degrees:.0f} degrees off their heading: body_turn_rad = {turn_rad:.2f}?"]
     return []
 
 

@@ -113,5 +113,6 @@ def _age_ns(notes: list[tuple[int, int, bytes]]) -> int:
     for _, kind, data in notes:
         if kind == _SO_TIMESTAMPNS and len(data) == _TIMESPEC.size:
             seconds, nanoseconds = _TIMESPEC.unpack(data)
-            return max(0, time.time_ns() - seconds * NS_PER_S - nanoseconds)
+            age_ns: int = time.time_ns() - seconds * NS_PER_S - nanoseconds
+            return max(0, age_ns)
     return 0

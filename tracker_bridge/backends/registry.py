@@ -1,4 +1,4 @@
-"""Which tracking systems there are: the entry points of the group `swarm.trackers`, ours and other packages'."""
+"""Which tracking systems there are: the entry points of the group `swarm.trackers`, of any package."""
 
 from __future__ import annotations
 
@@ -14,13 +14,10 @@ def system_named(name: str) -> TrackingSystem:
     """The tracking system that `[tracker] backend` names; UserError lists what there is."""
     known = _known()
     if not known:
-        raise UserError(
-            f"no tracking system is installed: the group {GROUP} has no entry; install this package again"
-        )
+        raise UserError(f"no tracking system is installed ({GROUP} is empty): install this package again")
     if name not in known:
-        raise UserError(
-            f"[tracker] backend is {name!r}; {nearest(name, known)} (there is: {', '.join(sorted(known))})"
-        )
+        there_is = ", ".join(sorted(known))
+        raise UserError(f"[tracker] backend is {name!r}; {nearest(name, known)} (there is: {there_is})")
     system = known[name].load()
     if not isinstance(system, TrackingSystem):
         raise UserError(f"the entry {known[name].value!r} of {GROUP} is no TrackingSystem")

@@ -14,7 +14,7 @@ from tracker_bridge.protocols.cursor import DatagramError
 from tracker_bridge.protocols.vicon import DEFAULT_PORT, UNIT_M, ViconDatagram, ViconObject, parse
 
 REORDERED_FRAMES = 10
-"""A network may deliver a frame so late, 0.1 s; one that is older comes from a Tracker that was started again."""
+"""So late, 0.1 s, a network may deliver a frame; an older one comes from a Tracker started again."""
 
 
 class ViconTracker:

@@ -19,7 +19,7 @@ Quaternion = tuple[float, float, float, float]
 
 
 class DatagramError(ValueError):
-    """Bytes that are not what they should be. The text is one of few, so that refusals can be counted by it."""
+    """Bytes that are not what they should be. There are few texts, so that refusals are counted by them."""
 
 
 class Cursor:

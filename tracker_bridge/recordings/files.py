@@ -39,8 +39,8 @@ def read_recording(path: Path) -> Recording:
 def _rows(path: Path) -> Rows:
     """The cells; the byte-order mark and either kind of line end are gone."""
     try:
-        data = gzip.open(path).read() if path.suffix == ".gz" else path.read_bytes()
-        lines = data.decode("utf-8-sig").splitlines()
+        data = path.read_bytes()
+        lines = (gzip.decompress(data) if path.suffix == ".gz" else data).decode("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError, EOFError) as error:
         raise UserError(f"{path}: cannot be read as text: {error}") from error
     separator = "\t" if lines and "\t" in lines[0] else ","

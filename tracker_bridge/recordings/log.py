@@ -23,17 +23,15 @@ def is_log(path: Path) -> bool:
 
 
 def read_log(path: Path) -> list[TrackedPose]:
-    """Every pose, in the order of capture; UserError if there is none, or what reads logs is not installed."""
+    """Every pose, in the order of capture; UserError if there is none, or the lab extra is missing."""
     try:
         from swarm.analysis.log_reader import LogReader
     except ImportError as error:
-        raise UserError(
-            f"{path}: logs are read by the lab extra: pip install 'swarm-runtime[lab]'"
-        ) from error
-    parts = LogReader(path, lambda channel: channel.topic is keys.POSE).parts()
+        raise UserError(f"{path}: logs need the lab extra: pip install 'swarm-runtime[lab]'") from error
+    reader = LogReader(path, lambda channel: channel.topic is keys.POSE)
     found = [
         _tracked(part.channel.sender, pb.Pose.FromString(payload))
-        for part in parts
+        for part in reader.parts()
         for payload in part.payloads
     ]
     if not found:

@@ -69,7 +69,7 @@ def _body(name: str, row: list[str], column: int) -> Body | None:
 
 
 def _quaternion(matrix: tuple[float, ...]) -> Quaternion:
-    """Of a rotation matrix whose columns follow each other; by the largest of four parts, which is never 0."""
+    """Of a rotation matrix, column by column; by the largest of four parts, which is never 0."""
     xx, xy, xz, yx, yy, yz, zx, zy, zz = matrix
     parts = (1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz, 1 + xx + yy + zz)
     rows = (
