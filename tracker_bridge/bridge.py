@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from swarm import keys
 from swarm.clock import NS_PER_S
-from swarm.link import Link
 from swarm.messages import swarm_pb2 as pb
-from tracker_bridge.backends.backend import Backend, TrackedPose
+from swarm.messages import topics
+from swarm.runtime.node import Link
 from tracker_bridge.backends.datagrams import Receiving
-from tracker_bridge.gate import Gate
+from tracker_bridge.backends.interface import Backend, TrackedPose
+from tracker_bridge.plausibility import Gate
 
 LOST_AFTER_NS = 2 * NS_PER_S
 
@@ -45,7 +45,7 @@ class Bridge:
         if reason:
             return
         self._seen_ns[tracked.robot] = tracked.captured_t_ns
-        self._link.publish(keys.POSE, _message(tracked), tracked.robot)
+        self._link.publish(topics.POSE, _message(tracked), tracked.robot)
 
     def _tell_of_datagrams(self, backend: Receiving) -> None:
         """Each reason for which datagrams are refused, once."""
@@ -54,7 +54,7 @@ class Bridge:
             self._report("datagram", f"refused: {reason}")
 
     def _report(self, name: str, text: str) -> None:
-        self._link.publish(keys.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))
+        self._link.publish(topics.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))
 
 
 def _message(tracked: TrackedPose) -> pb.Pose:

@@ -6,13 +6,19 @@ import argparse
 import sys
 from importlib import import_module
 
-from swarm.guard import guarded
-from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals, load_experiment
-from tracker_bridge.backends.backend import Setup
+from swarm.errors import guarded
+from swarm.runtime.process import (
+    OneLineParser,
+    add_common_arguments,
+    joined,
+    leave_on_signals,
+    load_experiment,
+)
+from tracker_bridge.backends.interface import Setup
 from tracker_bridge.backends.registry import system_named
 from tracker_bridge.bridge import Bridge
 from tracker_bridge.commands import VERBS
-from tracker_bridge.gate import Gate, GateSettings
+from tracker_bridge.plausibility import Gate, GateSettings
 
 
 def main() -> None:

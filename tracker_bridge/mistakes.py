@@ -9,7 +9,7 @@ from itertools import pairwise
 from statistics import median
 
 from swarm.geometry import Pose
-from tracker_bridge.backends.backend import TrackedPose
+from tracker_bridge.backends.interface import TrackedPose
 
 FAR_OUT = 10.0
 """A unit that is too small by 1000 puts a robot hundreds of arenas away; a carried robot, never ten."""

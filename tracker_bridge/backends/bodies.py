@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from swarm.clock import NS_PER_S
+from swarm.config.experiment import Experiment
 from swarm.errors import UserError
-from swarm.experiment import Experiment
 from swarm.geometry import Pose
 from tracker_bridge.arena_frame import ArenaFrame, Placement
-from tracker_bridge.backends.backend import TrackedPose
+from tracker_bridge.backends.interface import TrackedPose
 from tracker_bridge.protocols.cursor import Quaternion, Vector
 
 CLOCK_WINDOW_NS = 10 * NS_PER_S

@@ -10,11 +10,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from swarm.clock import NS_PER_S
+from swarm.config.experiment import Experiment, TrackerSettings
 from swarm.errors import UserError
-from swarm.experiment import Experiment, TrackerSettings
-from tracker_bridge.backends.backend import Backend, Setup, TrackedPose, TrackingSystem
 from tracker_bridge.backends.bodies import Body, Roster, SourceClock
 from tracker_bridge.backends.datagrams import Arrivals, Datagram, DatagramSocket
+from tracker_bridge.backends.interface import Backend, Setup, TrackedPose, TrackingSystem
 from tracker_bridge.protocols import natnet
 from tracker_bridge.protocols.cursor import DatagramError
 from tracker_bridge.protocols.natnet import MessageId, ServerInfo

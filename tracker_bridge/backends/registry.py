@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib.metadata import EntryPoint, entry_points
 
 from swarm.errors import UserError, nearest
-from tracker_bridge.backends.backend import TrackingSystem
+from tracker_bridge.backends.interface import TrackingSystem
 
 GROUP = "swarm.trackers"
 

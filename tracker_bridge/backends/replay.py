@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+from swarm.config.experiment import Experiment
 from swarm.errors import UserError
-from swarm.experiment import Experiment
-from tracker_bridge.backends.backend import Backend, Setup, TrackedPose, TrackingSystem
 from tracker_bridge.backends.bodies import Body, Roster
+from tracker_bridge.backends.interface import Backend, Setup, TrackedPose, TrackingSystem
 from tracker_bridge.recordings.files import read_recording
 from tracker_bridge.recordings.log import is_log, read_log
 

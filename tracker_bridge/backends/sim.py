@@ -9,15 +9,15 @@ from functools import partial
 
 import numpy as np
 
-from swarm import keys
 from swarm.clock import NS_PER_S
+from swarm.config.experiment import TrackerSettings
 from swarm.errors import UserError
-from swarm.experiment import TrackerSettings
-from swarm.feed import Received
 from swarm.geometry import Pose, wrap_angle_rad
 from swarm.learning.random import spawned_generator
 from swarm.messages import swarm_pb2 as pb
-from tracker_bridge.backends.backend import Backend, Setup, TrackedPose, TrackingSystem
+from swarm.messages import topics
+from swarm.runtime.subscription import Received
+from tracker_bridge.backends.interface import Backend, Setup, TrackedPose, TrackingSystem
 
 SECONDS_PER_HOUR = 3600.0
 STACK = 256
@@ -101,7 +101,7 @@ class SimulatedTracker:
 def _opened(setup: Setup) -> Iterator[Backend]:
     if setup.link is None:
         raise UserError('[tracker] backend is "sim", which sees robots only within a run')
-    truths = setup.link.subscribe(keys.TRUTH)
+    truths = setup.link.subscribe(topics.TRUTH)
     seed = setup.experiment.run.seed
     generator = partial(spawned_generator, seed, "", setup.trial, component="tracker")
     yield SimulatedTracker(setup.experiment.tracker, truths.take, lambda robot: generator(robot=robot))

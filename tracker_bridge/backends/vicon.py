@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from swarm.experiment import Experiment
+from swarm.config.experiment import Experiment
 from tracker_bridge.arena_frame import from_xyz_angles
-from tracker_bridge.backends.backend import Backend, Setup, TrackedPose, TrackingSystem
 from tracker_bridge.backends.bodies import Body, Roster
 from tracker_bridge.backends.datagrams import Arrivals, Datagram, DatagramSocket
+from tracker_bridge.backends.interface import Backend, Setup, TrackedPose, TrackingSystem
 from tracker_bridge.protocols.cursor import DatagramError
 from tracker_bridge.protocols.vicon import DEFAULT_PORT, UNIT_M, ViconDatagram, ViconObject, parse
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from swarm import keys
 from swarm.errors import UserError
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
-from tracker_bridge.backends.backend import TrackedPose
+from swarm.messages import topics
+from tracker_bridge.backends.interface import TrackedPose
 
 MAGIC = b"\x89MCAP"
 
@@ -25,10 +25,10 @@ def is_log(path: Path) -> bool:
 def read_log(path: Path) -> list[TrackedPose]:
     """Every pose, in the order of capture; UserError if there is none, or the lab extra is missing."""
     try:
-        from swarm.analysis.log_reader import LogReader
+        from swarm.logs.reader import LogReader
     except ImportError as error:
         raise UserError(f"{path}: logs need the lab extra: pip install 'swarm-runtime[lab]'") from error
-    reader = LogReader(path, lambda channel: channel.topic is keys.POSE)
+    reader = LogReader(path, lambda channel: channel.topic is topics.POSE)
     found = [
         _tracked(part.channel.sender, pb.Pose.FromString(payload))
         for part in reader.parts()
