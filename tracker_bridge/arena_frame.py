@@ -68,14 +68,14 @@ class ArenaFrame:
             self.unit_m * _part(position, self.up),
         )
 
-    def seen(self, pose: Pose, height_m: float) -> tuple[Vector, Quaternion]:
+    def seen(self, pose: Pose, height_m: float, body_turn_rad: float = 0.0) -> tuple[Vector, Quaternion]:
         """What the system would see of a robot at a pose: the inverse of `placed`."""
         moved = Pose(*self.origin_m, self.turn_rad).relative(pose)
         position = [0.0, 0.0, 0.0]
         parts = ((self.east, moved.x_m), (self.north, moved.y_m), (self.up, height_m))
         for (axis, sign), part_m in parts:
             position[axis] = sign * part_m / self.unit_m
-        half_rad = moved.theta_rad / 2
+        half_rad = (moved.theta_rad - body_turn_rad) / 2
         x, y, z = (math.sin(half_rad) * part for part in _along(self.up))
         return (position[0], position[1], position[2]), (x, y, z, math.cos(half_rad))
 
