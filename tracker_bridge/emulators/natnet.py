@@ -30,15 +30,14 @@ MARKER_M = 0.01
 class NatNetEmulator:
     """Serves at a command port; frames go to the group, or to whoever asked lately."""
 
-    def __init__(self, experiment: Experiment, interface: str, version: Version, data_port: int) -> None:
+    def __init__(self, experiment: Experiment, interface: str, version: Version) -> None:
         settings = experiment.tracker
         self._view = View(experiment, 1.0)
         self._numbers = {robot.body or robot.id: each for each, robot in enumerate(experiment.robot, 1)}
         self._group = settings.multicast
-        self._data_port = data_port
+        self._data_port = settings.port or natnet.DATA_PORT
         self._version = version
-        port = natnet.COMMAND_PORT if settings.command_port == 0 else settings.command_port
-        self._commands = DatagramSocket(interface, port)
+        self._commands = DatagramSocket(interface, settings.command_port or natnet.COMMAND_PORT)
         self._data = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._data.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(interface))
         self._clients: set[tuple[str, int]] = set()
