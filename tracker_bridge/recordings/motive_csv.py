@@ -35,8 +35,9 @@ def read(rows: Rows) -> Recording:
         raise UserError(f"rotations are {rotation}: export them as Quaternion")
     head = next(line for line, row in enumerate(rows) if row[:1] == ["Frame"])
     columns = _columns(rows, head)
-    moments = [_moment(row, columns) for row in rows[head + 1 :] if row and row[0].strip()]
-    return Recording(METRES[settings.get("Length Units", "Meters")], moments)
+    unit_m = METRES[settings.get("Length Units", "Meters")]
+    moments = [_moment(row, columns, unit_m) for row in rows[head + 1 :] if row and row[0].strip()]
+    return Recording(unit_m, moments)
 
 
 def _columns(rows: Rows, head: int) -> list[_Columns]:
@@ -57,15 +58,15 @@ def _error_column(found: dict[str, int]) -> int | None:
     return found.get("Mean Marker Error", found.get("Error Per Marker"))
 
 
-def _moment(row: list[str], columns: list[_Columns]) -> Moment:
-    bodies = [body for each in columns if (body := _body(row, each))]
+def _moment(row: list[str], columns: list[_Columns], unit_m: float) -> Moment:
+    bodies = [body for each in columns if (body := _body(row, each, unit_m))]
     return Moment(round(float(row[1]) * NS_PER_S), bodies)
 
 
-def _body(row: list[str], columns: _Columns) -> Body | None:
+def _body(row: list[str], columns: _Columns, unit_m: float) -> Body | None:
     rotation, position = numbers(row, columns.rotation, 4), vector(row, columns.position)
     if rotation is None or position is None:
         return None
     x, y, z, w = rotation
     error = number(row, columns.error) if columns.error is not None else None
-    return Body(columns.name, position, (x, y, z, w), error or 0.0)
+    return Body(columns.name, position, (x, y, z, w), unit_m * (error or 0.0))

@@ -28,7 +28,7 @@ RADIANS = {"rad": 1.0, "deg": math.pi / 180.0}
 
 
 def is_it(rows: Rows) -> bool:
-    return len(rows) > FIRST and rows[0][:1] != [] and rows[0][0].strip() in TITLES
+    return len(rows) >= FIRST and rows[0][:1] != [] and rows[0][0].strip() in TITLES
 
 
 def read(rows: Rows) -> Recording:
