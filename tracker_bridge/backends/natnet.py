@@ -18,7 +18,7 @@ from tracker_bridge.backends.interface import Backend, Setup, TrackedPose, Track
 from tracker_bridge.protocols import natnet
 from tracker_bridge.protocols.cursor import DatagramError
 from tracker_bridge.protocols.natnet import MessageId, ServerInfo
-from tracker_bridge.protocols.natnet_frame import Frame, RigidBody, parse_frame
+from tracker_bridge.protocols.natnet_frame import LONGEST_S, Frame, RigidBody, parse_frame
 from tracker_bridge.protocols.natnet_models import Models, parse_models
 
 ASK_EVERY_NS = NS_PER_S
@@ -40,6 +40,7 @@ class NatNetTracker:
         self._roster = Roster(experiment, UNIT_M)
         self._models = Models({}, {})
         self._knows_models = False
+        self._doubts_version = False
         self._clock = SourceClock()
         self._asked_ns: int | None = None
         self._commands = DatagramSocket(settings.interface, 0)
@@ -68,11 +69,12 @@ class NatNetTracker:
         self._data.close()
 
     def _ask(self, t_ns: int) -> None:
-        """Once a second: what is not known yet; and that this client still listens."""
+        """Once a second: what is not known, or not sure any more; and that this client still listens."""
         if not self._settings.server or (self._asked_ns is not None and t_ns - self._asked_ns < ASK_EVERY_NS):
             return
         self._asked_ns = t_ns
-        if self.info is None:
+        if self.info is None or self._doubts_version:
+            self._doubts_version = False
             self._send(natnet.connect("tracker-bridge"))
         elif not self._knows_models:
             self._send(natnet.packed(MessageId.REQUEST_MODEL_DEFINITIONS))
@@ -91,6 +93,7 @@ class NatNetTracker:
                 raise DatagramError("from another machine than [tracker] server")
             return self._understood(*natnet.split(datagram.data))
         except DatagramError as error:
+            self._doubts_version = True
             self.arrivals.refuse(error)
             return None
 
@@ -117,7 +120,8 @@ class NatNetTracker:
         numbers = [body.id for body in frame.rigid_bodies]
         if len(set(numbers)) < len(numbers):
             raise DatagramError("a frame with a body twice")
-        if frame.transmit_ticks < frame.mid_exposure_ticks:
+        under_way = frame.transmit_ticks - frame.mid_exposure_ticks
+        if under_way < 0 or self._seconds(frame.transmit_ticks) > LONGEST_S:
             raise DatagramError("a time that cannot be")
         if frame.models_changed:
             self._knows_models = False
@@ -129,6 +133,9 @@ class NatNetTracker:
         shares = frame.shares_seen()
         bodies = [self._body(body, shares) for body in frame.rigid_bodies if body.tracked]
         return self._roster.tracked(bodies, captured_ns, received_ns, source_ns)
+
+    def _seconds(self, ticks: int) -> float:
+        return ticks / self.info.clock_hz if self.info and self.info.clock_hz else 0.0
 
     def _times_ns(self, frame: Frame) -> tuple[int, int]:
         """When the cameras exposed and when the frame was sent, by the server's clock."""

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment, RobotSettings
 from swarm.geometry import Pose, wrap_angle_rad
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
+from swarm.messages.validation import decode
+from swarm.runtime.zenoh_session import Bus, BusSettings, Inbox, Sample
 from tracker_bridge.backends.interface import TrackedPose
 
 SPEED_M_PER_S = 0.1
@@ -38,3 +44,26 @@ class Circles:
             wrap_angle_rad(angle_rad + math.pi / 2 + NOISE_RAD * turn_noise),
         )
         return TrackedPose(robot.id, pose, t_ns)
+
+
+class TruthOfRun:
+    """The true places of a simulated run's robots, as the run publishes them."""
+
+    def __init__(self, inbox: Inbox) -> None:
+        self._inbox = inbox
+
+    @classmethod
+    @contextmanager
+    def of(cls, endpoint: str) -> Iterator[TruthOfRun]:
+        """Listens to the run's server for as long as the block lasts."""
+        with Bus(BusSettings(endpoint)) as bus:
+            yield cls(bus.inbox(topics.TRUTH.key(), topics.TRUTH.delivery, keep_all=True))
+
+    def poses(self, t_ns: int) -> list[TrackedPose]:
+        return [self._tracked(sample, t_ns) for sample in self._inbox.poll()]
+
+    @staticmethod
+    def _tracked(sample: Sample, t_ns: int) -> TrackedPose:
+        found = topics.topic_of(sample.key)
+        truth = decode(pb.Truth, sample.payload)
+        return TrackedPose(found[1] if found else "", Pose(truth.x_m, truth.y_m, truth.theta_rad), t_ns)

@@ -42,6 +42,7 @@ class NatNetEmulator:
         self._data.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(interface))
         self._clients: set[tuple[str, int]] = set()
         self._frame = 0
+        self._began_ns: int | None = None
 
     @property
     def port(self) -> int:
@@ -51,12 +52,14 @@ class NatNetEmulator:
         self.answer()
         self._frame += 1
         seen = self._view.seen(poses)
-        ticks = t_ns * CLOCK_HZ // NS_PER_S
+        self._began_ns = t_ns if self._began_ns is None else self._began_ns
+        running_ns = t_ns - self._began_ns
+        ticks = running_ns * CLOCK_HZ // NS_PER_S
         frame = Frame(
             self._frame,
             rigid_bodies=tuple(self._body(robot) for robot in seen),
             labelled_markers=tuple(marker for robot in seen for marker in self._markers(robot)),
-            timestamp_s=t_ns / NS_PER_S,
+            timestamp_s=running_ns / NS_PER_S,
             mid_exposure_ticks=ticks,
             transmit_ticks=ticks,
         )

@@ -31,8 +31,8 @@ TRACKED = 1
 OCCLUDED, POINT_CLOUD_SOLVED, MODEL_SOLVED = 1, 2, 4
 RECORDING, MODELS_CHANGED = 1, 2
 
-LONGEST_S = 1e9
-"""Thirty years: a timestamp counts seconds since the server began."""
+LONGEST_S = 4e9
+"""A timestamp counts seconds since the server began, or since 1970; in nanoseconds it fits in 63 bits."""
 QUATERNION_SLACK = 0.01
 """f32 quaternions are of length 1 within 1e-6; a packet read with a wrong layout is far from it."""
 
