@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import select
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -66,6 +67,7 @@ class EmulatedRig:
 
     def run_to(self, t_ns: int) -> None:
         self._emulator.show(standing(t_ns), t_ns)
+        select.select(self.backend.receivers, [], [])
 
     def close(self) -> None:
         self._emulator.close()
@@ -87,10 +89,9 @@ def natnet(version: Version = (3, 0), group: str = "") -> EmulatedRig:
     settings = replace(TURNED, server=LOOPBACK, port=free_udp_port(), multicast=group)
     experiment = tracked_experiment(replace(settings, command_port=free_udp_port()))
     backend, emulator = NatNetTracker(experiment), NatNetEmulator(experiment, LOOPBACK, version)
-    for _ in ("version", "names"):
+    while backend.info is None or not backend.models.bodies:
         backend.poses(0)
         emulator.answer()
-        assert backend.poses(0) == []
     return EmulatedRig(backend, emulator)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import select
 import socket
 import struct
 from collections.abc import Iterator
@@ -36,6 +37,7 @@ class Stream:
     def send(self, *datagrams: bytes) -> None:
         for datagram in datagrams:
             self._socket.sendto(datagram, (LOOPBACK, self.tracker.port))
+        select.select(self.tracker.receivers, [], [])
 
     def close(self) -> None:
         self.tracker.close()
@@ -75,6 +77,7 @@ def test_fifty_objects_at_100_hz_arrive_without_a_loss() -> None:
         t_ns = frame * PERIOD_NS
         swarm = [TrackedPose(robot, Pose(0.1 + 0.001 * frame, 1.0, 0.5), t_ns) for robot in FIFTY]
         emulator.show(swarm, t_ns)
+        select.select(stream.tracker.receivers, [], [])
         tracked = stream.tracker.poses(t_ns)
         assert [each.robot for each in tracked] == FIFTY
         assert all(each.pose.distance_m(swarm[0].pose) < 1e-9 for each in tracked)

@@ -87,6 +87,10 @@ class DatagramSocket:
         port: int = self._socket.getsockname()[1]
         return port
 
+    def fileno(self) -> int:
+        """For `select`, by which one can wait until something arrives."""
+        return self._socket.fileno()
+
     def send(self, data: bytes, host: str, port: int) -> None:
         """Best effort: a server that is not there yet is asked again later."""
         try:

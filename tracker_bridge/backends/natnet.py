@@ -36,15 +36,18 @@ class NatNetTracker:
         self.info: ServerInfo | None = _given_info(settings)
         self.frames: list[Frame] = []
         """The frames of the last call of `poses`."""
+        self.models = Models({}, {})
+        """The names of the bodies, as far as they are known."""
         self._settings = settings
         self._roster = Roster(experiment, UNIT_M)
-        self._models = Models({}, {})
         self._knows_models = False
         self._doubts_version = False
         self._clock = SourceClock()
         self._asked_ns: int | None = None
         self._commands = DatagramSocket(settings.interface, 0)
         self._data = DatagramSocket(settings.interface, settings.port or natnet.DATA_PORT, settings.multicast)
+        self.receivers = (self._commands, self._data)
+        """A server sends to the one that asked, or to the port for data."""
 
     @property
     def port(self) -> int:
@@ -54,7 +57,7 @@ class NatNetTracker:
         self._ask(t_ns)
         self.frames = []
         tracked: list[TrackedPose] = []
-        for receiver in (self._commands, self._data):
+        for receiver in self.receivers:
             for datagram in receiver.arrived():
                 frame = self._frame(datagram)
                 if frame:
@@ -65,8 +68,8 @@ class NatNetTracker:
     def close(self) -> None:
         if self._settings.server:
             self._send(natnet.packed(MessageId.DISCONNECT))
-        self._commands.close()
-        self._data.close()
+        for receiver in self.receivers:
+            receiver.close()
 
     def _ask(self, t_ns: int) -> None:
         """Once a second: what is not known, or not sure any more; and that this client still listens."""
@@ -103,7 +106,7 @@ class NatNetTracker:
         elif number in (MessageId.FRAME, MessageId.MODEL_DEFINITIONS) and self.info is None:
             raise DatagramError("of a version not known yet: set [tracker] server, or version")
         elif number == MessageId.MODEL_DEFINITIONS and self.info:
-            self._models, self._knows_models = parse_models(payload, self.info.version), True
+            self.models, self._knows_models = parse_models(payload, self.info.version), True
         elif number == MessageId.FRAME and self.info:
             return self._checked(parse_frame(payload, self.info.version))
         return None
@@ -146,7 +149,7 @@ class NatNetTracker:
         return (round(frame.timestamp_s * NS_PER_S),) * 2
 
     def _body(self, body: RigidBody, shares: dict[int, float]) -> Body:
-        name = self._models.name_of(body.id)
+        name = self.models.name_of(body.id)
         return Body(name, body.position_m, body.rotation, body.error_m, shares.get(body.id, 0.0))
 
 

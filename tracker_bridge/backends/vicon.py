@@ -26,6 +26,7 @@ class ViconTracker:
         self._roster = Roster(experiment, UNIT_M)
         self._server = settings.server
         self._socket = DatagramSocket(settings.interface, settings.port or DEFAULT_PORT)
+        self.receivers = (self._socket,)
         self._frame: int | None = None
         self._seen: set[str] = set()
 
