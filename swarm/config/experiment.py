@@ -114,6 +114,8 @@ class TrackerSettings:
     """The protocol's version, for a server that does not answer when asked for it."""
     system: str = ""
     """Which system the `motioncapture` library talks to: vicon, qualisys, vrpn or optitrack."""
+    options: tuple[str, ...] = ()
+    """More settings of that library, each as `name=value`."""
     file: str = ""
     """The recording that the `replay` backend plays: a system's CSV export, or a log."""
     axes: str = "x y z"

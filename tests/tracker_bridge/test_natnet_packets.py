@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
+import natnet as independent
 import pytest
+from natnet.packet_buffer import PacketBuffer
 
 from tests.support.natnet_capture import packets, printed, single
 from tracker_bridge.protocols import natnet
@@ -136,6 +138,18 @@ def test_what_an_emulator_packs_is_read_back(version: Version) -> None:
         pack_models([BodyDefinition(3, "r1", markers_m=((1.0, 2.0, 3.0),))], version), version
     )
     assert (models.name_of(3), models.bytes_left) == ("r1", 0)
+
+
+@pytest.mark.parametrize("version", [(3, 0), (4, 0), (4, 1)])
+def test_an_independent_reader_understands_what_an_emulator_packs(version: Version) -> None:
+    buffer = PacketBuffer(pack_frame(EXAMPLE, version))
+    frame = independent.DataFrame.read_from_buffer(buffer, independent.Version(*version))
+    assert [(body.id_num, body.pos, body.rot, body.tracking_valid) for body in frame.rigid_bodies] == [
+        (body.id, body.position_m, body.rotation, body.tracked) for body in EXAMPLE.rigid_bodies
+    ]
+    (marker,) = frame.labeled_markers
+    assert (marker.model_id, marker.marker_id, marker.pos, marker.occluded) == (3, 1, (1.0, 0.5, -2.0), True)
+    assert frame.suffix.timestamp == EXAMPLE.timestamp_s
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,7 @@ class NatNetTracker:
         tracked: list[TrackedPose] = []
         for receiver in self.receivers:
             for datagram in receiver.arrived():
-                frame = self._frame(datagram)
+                frame = self._frame(datagram, receiver is self._commands)
                 if frame:
                     self.frames.append(frame)
                     tracked += self._tracked(frame, t_ns - datagram.age_ns)
@@ -88,19 +88,21 @@ class NatNetTracker:
         port = self._settings.command_port or natnet.COMMAND_PORT
         self._commands.send(packet, self._settings.server, port)
 
-    def _frame(self, datagram: Datagram) -> Frame | None:
-        """Take in a packet; the frame, if it is one."""
+    def _frame(self, datagram: Datagram, is_answer: bool) -> Frame | None:
+        """Take in a packet, which may be an answer only if it came to where questions are sent from."""
         self.arrivals.count(datagram.sender)
         try:
             if self._settings.server and datagram.sender.partition(":")[0] != self._settings.server:
                 raise DatagramError("from another machine than [tracker] server")
-            return self._understood(*natnet.split(datagram.data))
+            return self._understood(*natnet.split(datagram.data), is_answer)
         except DatagramError as error:
             self._doubts_version = True
             self.arrivals.refuse(error)
             return None
 
-    def _understood(self, number: int, payload: bytes) -> Frame | None:
+    def _understood(self, number: int, payload: bytes, is_answer: bool) -> Frame | None:
+        if number != MessageId.FRAME and not is_answer:
+            raise DatagramError("an answer that nobody asked for")
         if number == MessageId.SERVER_INFO:
             self._meet(natnet.parse_server_info(payload))
         elif number in (MessageId.FRAME, MessageId.MODEL_DEFINITIONS) and self.info is None:
