@@ -18,7 +18,7 @@ from tracker_bridge.backends.interface import Setup
 from tracker_bridge.backends.registry import system_named
 from tracker_bridge.bridge import Bridge
 from tracker_bridge.commands import VERBS
-from tracker_bridge.plausibility import Gate, GateSettings
+from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
 
 def main() -> None:
@@ -44,13 +44,13 @@ def run(arguments: argparse.Namespace) -> None:
     leave_on_signals()
     period_s = system.poll_s or experiment.simulation.tick_s
     with (
-        joined(arguments, "tracker", ["bridge"], period_s) as link,
-        system.open(Setup(experiment, link, arguments.trial)) as backend,
+        joined(arguments, "tracker", ["bridge"], period_s) as node,
+        system.open(Setup(experiment, node, arguments.trial)) as backend,
     ):
         arena = experiment.arena
-        gate = Gate(GateSettings(arena.width_m, arena.height_m))
-        bridge = Bridge(backend, gate, link, [robot.id for robot in experiment.robot])
-        link.run(bridge.step)
+        plausibility = Plausibility(PlausibilitySettings(arena.width_m, arena.height_m))
+        bridge = Bridge(backend, plausibility, node, [robot.id for robot in experiment.robot])
+        node.run(bridge.step)
 
 
 def _parser() -> OneLineParser:

@@ -1,4 +1,4 @@
-"""The plausibility gate: what a tracking system says is not believed before it was looked at."""
+"""The plausibility plausibility: what a tracking system says is not believed before it was looked at."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tracker_bridge.mistakes import likely_mistake
 
 
 @dataclass(frozen=True)
-class GateSettings:
+class PlausibilitySettings:
     """What a robot can do at most. An e-puck makes 0.13 m/s; a hand that carries it, far more."""
 
     width_m: float
@@ -46,10 +46,10 @@ class _Track:
     swapped_with: str = ""
 
 
-class Gate:
+class Plausibility:
     """Judges one pose at a time, from each robot's own past and from where the others are."""
 
-    def __init__(self, settings: GateSettings) -> None:
+    def __init__(self, settings: PlausibilitySettings) -> None:
         self._settings = settings
         self._tracks: dict[str, _Track] = {}
 

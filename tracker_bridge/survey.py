@@ -11,7 +11,7 @@ from swarm.config.experiment import Experiment
 from tracker_bridge.backends.datagrams import Arrivals
 from tracker_bridge.backends.interface import TrackedPose
 from tracker_bridge.mistakes import likely_mistakes
-from tracker_bridge.plausibility import Gate, GateSettings
+from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
 NS_PER_MS = 1_000_000
 THINNED_NS = NS_PER_S // 20
@@ -68,7 +68,7 @@ class Survey:
     def __init__(self, experiment: Experiment) -> None:
         self._experiment = experiment
         arena = experiment.arena
-        self._gate = Gate(GateSettings(arena.width_m, arena.height_m))
+        self._plausibility = Plausibility(PlausibilitySettings(arena.width_m, arena.height_m))
         self._robots = {robot.id: _Seen() for robot in experiment.robot}
         self._strangers: Counter[str] = Counter()
         self._kept: list[TrackedPose] = []
@@ -84,7 +84,7 @@ class Survey:
             self._keep(tracked)
             seen.poses.append(tracked)
             seen.latencies_ns.append(now_ns - tracked.received_t_ns)
-            reason = self._gate.reason_against(tracked)
+            reason = self._plausibility.reason_against(tracked)
             if reason:
                 seen.refused[reason.split(" ")[0].rstrip(":")] += 1
 

@@ -19,7 +19,7 @@ from tests.support.tracked_swarm import LOOPBACK, PLACES, free_udp_port, tracked
 from tracker_bridge.backends.natnet import NatNetTracker
 from tracker_bridge.backends.vicon import ViconTracker
 from tracker_bridge.emulators.natnet import NatNetEmulator
-from tracker_bridge.plausibility import Gate, GateSettings
+from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 from tracker_bridge.protocols import natnet, vicon
 from tracker_bridge.protocols.natnet import MessageId
 from tracker_bridge.protocols.natnet_frame import Frame, RigidBody
@@ -120,7 +120,7 @@ def test_nothing_that_arrives_hurts(
     datagrams: int,
 ) -> None:
     """A whole one comes now and then; what the gate believes is where the robots are."""
-    rng, gate, believed = random.Random(7), Gate(GateSettings(3.0, 2.0)), 0
+    rng, plausibility, believed = random.Random(7), Plausibility(PlausibilitySettings(3.0, 2.0)), 0
     middle_bytes = 0
     tracemalloc.start()
     with closing(opened()) as tracker:
@@ -131,7 +131,7 @@ def test_nothing_that_arrives_hurts(
             for tracked in tracker.poses(number * TICK_NS):
                 pose = tracked.pose
                 assert all(map(math.isfinite, (pose.x_m, pose.y_m, pose.theta_rad)))
-                if tracked.robot in PLACES and gate.reason_against(tracked) is None:
+                if tracked.robot in PLACES and plausibility.reason_against(tracked) is None:
                     believed += 1
                     assert tracked.pose.distance_m(PLACES[tracked.robot]) < 0.15
             if first == datagrams // 2 // BATCH * BATCH:

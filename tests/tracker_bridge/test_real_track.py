@@ -14,15 +14,15 @@ import pytest
 from swarm.config.experiment import TrackerSettings
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
-from tests.support.local_link import LocalLink
+from tests.support.local_node import LocalNode
 from tests.support.tracked_swarm import tracked_experiment
 from tracker_bridge.backends.interface import TrackedPose
 from tracker_bridge.backends.replay import replay
 from tracker_bridge.bridge import Bridge
-from tracker_bridge.plausibility import Gate, GateSettings
+from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
 FILE = Path(__file__).parents[1] / "data" / "tracks" / "two_robots_qualisys_300hz.csv.gz"
-SETTINGS = GateSettings(3.0, 3.0)
+SETTINGS = PlausibilitySettings(3.0, 3.0)
 FRAMES = 19_520
 FAULT = 5_000
 """The number of the pose from which a fault lasts: after 8 s, when both robots have driven."""
@@ -39,8 +39,8 @@ def track() -> tuple[TrackedPose, ...]:
 
 
 def verdicts(poses: list[TrackedPose]) -> list[tuple[str, str | None]]:
-    gate = Gate(SETTINGS)
-    return [(tracked.robot, gate.reason_against(tracked)) for tracked in poses]
+    plausibility = Plausibility(SETTINGS)
+    return [(tracked.robot, plausibility.reason_against(tracked)) for tracked in poses]
 
 
 def altered(alter: Callable[[Pose], Pose]) -> list[TrackedPose]:
@@ -50,13 +50,13 @@ def altered(alter: Callable[[Pose], Pose]) -> list[TrackedPose]:
 
 
 def test_nothing_is_refused_and_nothing_smoothed_away() -> None:
-    poses, link = list(track()), LocalLink()
+    poses, node = list(track()), LocalNode()
     assert len(poses) > 1.95 * FRAMES
     script = Script(poses)
-    bridge = Bridge(script, Gate(SETTINGS), link, ["a", "b"])
+    bridge = Bridge(script, Plausibility(SETTINGS), node, ["a", "b"])
     for tick in range(poses[-1].captured_t_ns // script.tick_ns + 2):
         bridge.step(tick * script.tick_ns)
-    assert [(key, message.x_m, message.y_m) for key, message in link.published] == [
+    assert [(key, message.x_m, message.y_m) for key, message in node.published] == [
         (f"robot/{tracked.robot}/pose", tracked.pose.x_m, tracked.pose.y_m) for tracked in poses
     ]
 
@@ -114,15 +114,15 @@ def test_a_wrong_unit_and_a_mirror_are_named(alter: Callable[[Pose], Pose], name
 
 
 def test_a_robot_that_is_cut_off_is_lost_and_delays_nobody() -> None:
-    poses, link = list(track()), LocalLink()
+    poses, node = list(track()), LocalNode()
     kept = [tracked for number, tracked in enumerate(poses) if number < FAULT or tracked.robot == "b"]
     script = Script(kept)
-    bridge = Bridge(script, Gate(SETTINGS), link, ["a", "b"])
+    bridge = Bridge(script, Plausibility(SETTINGS), node, ["a", "b"])
     for tick in range(poses[-1].captured_t_ns // script.tick_ns + 2):
         bridge.step(tick * script.tick_ns)
-    events = [message.text for _, message in link.published if isinstance(message, pb.Event)]
+    events = [message.text for _, message in node.published if isinstance(message, pb.Event)]
     assert events == ["a: no believable pose for 2 s"]
-    assert sum(key == "robot/b/pose" for key, _ in link.published) == sum(p.robot == "b" for p in poses)
+    assert sum(key == "robot/b/pose" for key, _ in node.published) == sum(p.robot == "b" for p in poses)
 
 
 class Script:

@@ -9,7 +9,7 @@ from typing import Protocol
 
 from swarm.config.experiment import Experiment
 from swarm.geometry import Pose
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
 
 POLL_S = 0.002
 """How often a real tracking system is asked: a pose then waits 1 ms on the average."""
@@ -54,7 +54,7 @@ class Setup:
     """What a backend is made from."""
 
     experiment: Experiment
-    link: Link | None
+    node: Node | None
     """None where there is no run, as in `tracker-bridge check`."""
     trial: int = 0
 

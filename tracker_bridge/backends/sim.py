@@ -99,9 +99,9 @@ class SimulatedTracker:
 
 @contextmanager
 def _opened(setup: Setup) -> Iterator[Backend]:
-    if setup.link is None:
+    if setup.node is None:
         raise UserError('[tracker] backend is "sim", which sees robots only within a run')
-    truths = setup.link.subscribe(topics.TRUTH)
+    truths = setup.node.subscribe(topics.TRUTH)
     seed = setup.experiment.run.seed
     generator = partial(spawned_generator, seed, "", setup.trial, component="tracker")
     yield SimulatedTracker(setup.experiment.tracker, truths.take, lambda robot: generator(robot=robot))

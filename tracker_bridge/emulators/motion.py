@@ -14,7 +14,7 @@ from swarm.geometry import Pose, wrap_angle_rad
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.validation import decode
-from swarm.runtime.zenoh_session import Bus, BusSettings, Inbox, Sample
+from swarm.runtime.zenoh_session import Inbox, Session, SessionSettings, WireSample
 from tracker_bridge.backends.interface import TrackedPose
 
 SPEED_M_PER_S = 0.1
@@ -56,14 +56,14 @@ class TruthOfRun:
     @contextmanager
     def of(cls, endpoint: str) -> Iterator[TruthOfRun]:
         """Listens to the run's server for as long as the block lasts."""
-        with Bus(BusSettings(endpoint)) as bus:
-            yield cls(bus.inbox(topics.TRUTH.key(), topics.TRUTH.delivery, keep_all=True))
+        with Session(SessionSettings(endpoint)) as session:
+            yield cls(session.inbox(topics.TRUTH.key(), topics.TRUTH.delivery, keep_all=True))
 
     def poses(self, t_ns: int) -> list[TrackedPose]:
         return [self._tracked(sample, t_ns) for sample in self._inbox.poll()]
 
     @staticmethod
-    def _tracked(sample: Sample, t_ns: int) -> TrackedPose:
+    def _tracked(sample: WireSample, t_ns: int) -> TrackedPose:
         found = topics.topic_of(sample.key)
         truth = decode(pb.Truth, sample.payload)
         return TrackedPose(found[1] if found else "", Pose(truth.x_m, truth.y_m, truth.theta_rad), t_ns)

@@ -30,7 +30,7 @@ def read_log(path: Path) -> list[TrackedPose]:
         raise UserError(f"{path}: logs need the lab extra: pip install 'swarm-runtime[lab]'") from error
     reader = LogReader(path, lambda channel: channel.topic is topics.POSE)
     found = [
-        _tracked(part.channel.sender, pb.Pose.FromString(payload))
+        _tracked(part.channel.publisher, pb.Pose.FromString(payload))
         for part in reader.parts()
         for payload in part.payloads
     ]
