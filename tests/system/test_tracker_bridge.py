@@ -106,10 +106,8 @@ def test_points_from_a_file_give_the_lines_of_the_table(tmp_path: Path) -> None:
     assert result.stdout.startswith('axes = "x -z y"\nunit_m = 0.001\norigin_m = [0.1000, 0.1000]\n')
 
 
-@pytest.mark.parametrize(
-    ("name", "version", "bodies"), [("1.7.2-001", "2.7", [1]), ("1.9.0-001", "2.9", [2])]
-)
-def test_decode_prints_bodies_markers_and_what_is_left(name: str, version: str, bodies: list[int]) -> None:
+@pytest.mark.parametrize(("name", "version", "body"), [("1.7.2-001", "2.7", 1), ("1.9.0-001", "2.9", 2)])
+def test_decode_prints_bodies_markers_and_what_is_left(name: str, version: str, body: int) -> None:
     result = called("decode", "natnet", NATNET / f"frame-motive-{name}.bin", "--version", version, "--json")
     packet = json.loads(result.stdout)
     assert packet["bytes_left"] == 0

@@ -87,9 +87,6 @@ def test_places_that_do_not_tell_are_named(places: list[tuple[float, float]], sa
 
 
 def test_a_unit_that_is_none_is_named() -> None:
-    feet = [
-        replace(point, seen=tuple(3.28 * part for part in point.seen))
-        for point in points(frame("x y z", 1.0))
-    ]
-    with pytest.raises(UserError, match=r"one unit of the system would be 0\.3049 m"):
+    feet = points(frame("x y z", 0.3048))
+    with pytest.raises(UserError, match=r"one unit of the system would be 0\.3048 m"):
         calibrate(feet)

@@ -15,7 +15,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing
 from typing import Any
 
 from swarm.clock import NS_PER_S
@@ -23,7 +23,7 @@ from swarm.config.experiment import Experiment, TrackerSettings
 from swarm.errors import UserError
 from tracker_bridge.backends.bodies import Body, Roster
 from tracker_bridge.backends.datagrams import Arrivals
-from tracker_bridge.backends.interface import Backend, Setup, TrackedPose, TrackingSystem
+from tracker_bridge.backends.interface import TrackedPose, TrackingSystem
 from tracker_bridge.protocols.cursor import DatagramError, finite
 
 UNIT_M = 1.0
@@ -116,16 +116,7 @@ def _options(settings: TrackerSettings) -> dict[str, str]:
     return options
 
 
-@contextmanager
-def _opened(setup: Setup) -> Iterator[Backend]:
-    tracker = MotionCaptureTracker(setup.experiment)
-    try:
-        yield tracker
-    finally:
-        tracker.close()
-
-
-SYSTEM = TrackingSystem(_opened)
+SYSTEM = TrackingSystem(lambda setup: closing(MotionCaptureTracker(setup.experiment)))
 
 
 def tell(system: str, options: dict[str, str], telling: int) -> None:

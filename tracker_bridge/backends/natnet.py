@@ -7,14 +7,14 @@ is the yardstick of the tests instead.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing
 
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment, TrackerSettings
 from swarm.errors import UserError
 from tracker_bridge.backends.bodies import Body, Roster, SourceClock
 from tracker_bridge.backends.datagrams import Arrivals, Datagram, DatagramSocket
-from tracker_bridge.backends.interface import Backend, Setup, TrackedPose, TrackingSystem
+from tracker_bridge.backends.interface import TrackedPose, TrackingSystem
 from tracker_bridge.protocols import natnet
 from tracker_bridge.protocols.cursor import DatagramError
 from tracker_bridge.protocols.natnet import MessageId, ServerInfo
@@ -165,13 +165,4 @@ def _given_info(settings: TrackerSettings) -> ServerInfo | None:
         raise UserError(f"[tracker] version: {error}") from error
 
 
-@contextmanager
-def _opened(setup: Setup) -> Iterator[Backend]:
-    tracker = NatNetTracker(setup.experiment)
-    try:
-        yield tracker
-    finally:
-        tracker.close()
-
-
-SYSTEM = TrackingSystem(_opened)
+SYSTEM = TrackingSystem(lambda setup: closing(NatNetTracker(setup.experiment)))

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing
 
 from swarm.config.experiment import Experiment
 from tracker_bridge.arena_frame import from_xyz_angles
 from tracker_bridge.backends.bodies import Body, Roster
 from tracker_bridge.backends.datagrams import Arrivals, Datagram, DatagramSocket
-from tracker_bridge.backends.interface import Backend, Setup, TrackedPose, TrackingSystem
+from tracker_bridge.backends.interface import TrackedPose, TrackingSystem
 from tracker_bridge.protocols.cursor import DatagramError
 from tracker_bridge.protocols.vicon import DEFAULT_PORT, UNIT_M, ViconDatagram, ViconObject, parse
 
@@ -73,13 +72,4 @@ def _body(seen: ViconObject) -> Body:
     return Body(seen.name, seen.position_mm, from_xyz_angles(seen.rotation_rad))
 
 
-@contextmanager
-def _opened(setup: Setup) -> Iterator[Backend]:
-    tracker = ViconTracker(setup.experiment)
-    try:
-        yield tracker
-    finally:
-        tracker.close()
-
-
-SYSTEM = TrackingSystem(_opened)
+SYSTEM = TrackingSystem(lambda setup: closing(ViconTracker(setup.experiment)))
