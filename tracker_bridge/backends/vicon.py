@@ -65,7 +65,8 @@ class ViconTracker:
         if part.frame != self._frame:
             self._frame = part.frame
             self._seen.clear()
-        new = [seen for seen in part.objects if seen.name not in self._seen]
+        named = {seen.name: seen for seen in part.objects}
+        new = [seen for name, seen in named.items() if name not in self._seen]
         if part.objects and not new:
             raise DatagramError("sent twice")
         self._seen.update(seen.name for seen in new)
