@@ -10,7 +10,7 @@ from swarm.clock import NS_PER_S
 WINDOW_NS = 10 * NS_PER_S
 """Two clocks of 100 ppm drift apart by 1 ms in this time."""
 RESET_NS = NS_PER_S // 5
-"""A clock that is off by so much was set, or started again; no network and no tick is so late."""
+"""A clock that is off by so much was set, or its server started again; no network is so late."""
 
 
 class LeastDelay:
@@ -34,15 +34,21 @@ class LeastDelay:
 
 
 class ReceiptClock:
-    """From the machine's time, by which the kernel says when it received something, to the run's."""
+    """From the machine's monotonic time, at which something was received, to the run's.
 
-    def __init__(self, unix_ns: Callable[[], int] = time.time_ns) -> None:
-        self._unix_ns = unix_ns
-        self._delay = LeastDelay()
+    The run's time is a monotonic clock too; what is not known is how late each tick begins. The least
+    lateness so far is the nearest to none.
+    """
+
+    def __init__(self, monotonic_ns: Callable[[], int] = time.monotonic_ns) -> None:
+        self._monotonic_ns = monotonic_ns
+        self._apart_ns: int | None = None
 
     def shift_ns(self, t_ns: int) -> int:
-        """What to add to a Unix time; `t_ns` is when the current tick was due, a little before now."""
-        return -self._delay.of(self._unix_ns() - t_ns, t_ns)
+        """What to add to a monotonic time; `t_ns` is when the current tick was due, a little before now."""
+        apart_ns = self._monotonic_ns() - t_ns
+        self._apart_ns = apart_ns if self._apart_ns is None else min(self._apart_ns, apart_ns)
+        return -self._apart_ns
 
 
 class SourceClock:

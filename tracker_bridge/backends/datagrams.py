@@ -20,6 +20,8 @@ RECEIVE_BUFFER_BYTES = 4 * 2**20
 """Some 100 ms of the largest swarm, for a machine that was busy; the system may give less."""
 MOST_AT_ONCE = 2_000
 """A flood may not keep the bridge from its robots: what is left waits for the next tick."""
+OLDEST_NS = 10 * NS_PER_S
+"""A receive buffer of 4 MB does not hold more of any stream."""
 MOST_SENDERS = 100
 """Whoever invents senders may not fill the memory."""
 
@@ -30,11 +32,11 @@ _ROOM_FOR_NOTES = socket.CMSG_SPACE(_TIMESPEC.size)
 
 
 class Datagram(NamedTuple):
-    """What arrived, from whom, and the Unix time at which the kernel had it."""
+    """What arrived, from whom, and the machine's monotonic time at which the kernel had it."""
 
     data: bytes
     sender: str
-    received_unix_ns: int
+    received_ns: int
 
 
 @dataclass
@@ -106,17 +108,17 @@ class DatagramSocket:
                 return
             except OSError:
                 continue  # an answer "port unreachable" to something sent before
-            yield Datagram(data, f"{host}:{port}", _received_unix_ns(notes))
+            yield Datagram(data, f"{host}:{port}", time.monotonic_ns() - _age_ns(notes))
 
     def close(self) -> None:
         self._socket.close()
 
 
-def _received_unix_ns(notes: list[tuple[int, int, bytes]]) -> int:
-    """When the kernel received a datagram; now, where it does not say."""
+def _age_ns(notes: list[tuple[int, int, bytes]]) -> int:
+    """How long ago the kernel received a datagram; 0 where it does not say, or the clock was set."""
     for _, kind, data in notes:
         if kind == _SO_TIMESTAMPNS and len(data) == _TIMESPEC.size:
             seconds, nanoseconds = _TIMESPEC.unpack(data)
-            received_ns: int = seconds * NS_PER_S + nanoseconds
-            return received_ns
-    return time.time_ns()
+            age_ns: int = time.time_ns() - seconds * NS_PER_S - nanoseconds
+            return age_ns if 0 <= age_ns < OLDEST_NS else 0
+    return 0

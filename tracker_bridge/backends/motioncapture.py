@@ -124,7 +124,7 @@ SYSTEM = TrackingSystem(lambda setup: closing(MotionCaptureTracker(setup.experim
 
 
 def tell(system: str, options: dict[str, str], telling: int) -> None:
-    """The child: a line for every frame, with the Unix time at which it came, until nobody reads it."""
+    """The child: a line for every frame, with the monotonic time at which it came, until nobody reads it."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     import motioncapture
 
@@ -133,7 +133,7 @@ def tell(system: str, options: dict[str, str], telling: int) -> None:
         while True:
             client.waitForNextFrame()
             bodies = [_told(name, body) for name, body in client.rigidBodies.items()]
-            lines.write(json.dumps([time.time_ns(), [body for body in bodies if body]]) + "\n")
+            lines.write(json.dumps([time.monotonic_ns(), [body for body in bodies if body]]) + "\n")
             lines.flush()
 
 

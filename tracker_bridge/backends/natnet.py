@@ -65,7 +65,7 @@ class NatNetTracker:
             frame = self._frame(datagram, receiver is self._commands)
             if frame:
                 self.frames.append(frame)
-                tracked += self._tracked(frame, datagram.received_unix_ns + shift_ns)
+                tracked += self._tracked(frame, datagram.received_ns + shift_ns)
         return tracked
 
     def close(self) -> None:

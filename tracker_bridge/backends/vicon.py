@@ -40,7 +40,7 @@ class ViconTracker:
         shift_ns = self._clock.shift_ns(t_ns)
         tracked: list[TrackedPose] = []
         for datagram in datagrams:
-            received_ns = datagram.received_unix_ns + shift_ns
+            received_ns = datagram.received_ns + shift_ns
             bodies = [_body(seen) for seen in self._objects(datagram)]
             tracked += self._roster.tracked(bodies, received_ns, received_ns)
         return tracked
