@@ -118,7 +118,7 @@ class NatNetTracker:
 
     def _meet(self, info: ServerInfo) -> None:
         if not natnet.is_known(info.version):
-            raise DatagramError(f"of NatNet {info.version[0]}.{info.version[1]}; 2.5 to 4.1 are known")
+            raise DatagramError("of a NatNet version that is not known; 2.5 to 4.1 are")
         self.info = info
         self._asked_ns = None
 
