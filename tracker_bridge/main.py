@@ -32,7 +32,8 @@ def call(words: list[str]) -> None:
         run(_parser().parse_args(words))
         return
     verb = import_module(f"tracker_bridge.commands.{words[0]}")
-    parser = OneLineParser(prog=f"tracker-bridge {words[0]}", description=VERBS[words[0]])
+    about = {"prog": f"tracker-bridge {words[0]}", "description": VERBS[words[0]]}
+    parser = OneLineParser(**about, conflict_handler="resolve")  # a verb's --version may be a protocol's
     verb.add_arguments(parser)
     verb.run(parser.parse_args(words[1:]))
 

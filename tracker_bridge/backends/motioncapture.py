@@ -21,6 +21,8 @@ from typing import Any
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment, TrackerSettings
 from swarm.errors import UserError
+from swarm.extras import require_extra
+from swarm.interpreter import child_environment, module_command
 from tracker_bridge.backends.bodies import Body, Roster
 from tracker_bridge.backends.clocks import ReceiptClock
 from tracker_bridge.backends.datagrams import Arrivals
@@ -44,10 +46,11 @@ class MotionCaptureTracker:
         settings = experiment.tracker
         if settings.system not in SYSTEMS:
             raise UserError(f"[tracker] system is {settings.system!r}; one of {', '.join(SYSTEMS)} is needed")
+        require_extra("mocap", "motioncapture")
         self.arrivals = Arrivals()
         self._roster = Roster(experiment, UNIT_M)
         self._sender = f"{settings.system} {settings.server}".strip()
-        self._command = [sys.executable, "-m", __name__, settings.system, json.dumps(_options(settings))]
+        self._command = module_command(__name__, settings.system, json.dumps(_options(settings)))
         self._receipts = ReceiptClock()
         self._heard_ns: int | None = None
         self._start()
@@ -80,7 +83,9 @@ class MotionCaptureTracker:
         self._told, telling = os.pipe()
         os.set_blocking(self._told, False)
         command = [*self._command, str(telling)]
-        self._child = subprocess.Popen(command, pass_fds=[telling], stdout=subprocess.DEVNULL)
+        self._child = subprocess.Popen(
+            command, env=child_environment(), pass_fds=[telling], stdout=subprocess.DEVNULL
+        )
         os.close(telling)
 
     def _stop(self) -> None:

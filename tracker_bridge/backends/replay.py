@@ -22,7 +22,7 @@ class Replay:
     """The first call of `poses` is the recording's first moment."""
 
     def __init__(self, moments: list[Seen]) -> None:
-        self._moments = moments
+        self._moments = sorted(moments, key=lambda moment: moment[0])
         self._next = 0
         self._shift_ns: int | None = None
 

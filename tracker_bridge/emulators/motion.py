@@ -9,18 +9,19 @@ from contextlib import contextmanager
 import numpy as np
 
 from swarm.clock import NS_PER_S
-from swarm.config.experiment import Experiment, RobotSettings
-from swarm.geometry import Pose, wrap_angle_rad
+from swarm.config.experiment import Experiment, RobotSettings, TrackerSettings
+from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.validation import decode
 from swarm.runtime.zenoh_session import Inbox, Session, SessionSettings, WireSample
+from swarm.tracker_noise import measured
 from tracker_bridge.backends.interface import TrackedPose
 
 SPEED_M_PER_S = 0.1
 """An e-puck makes 0.13."""
-NOISE_M, NOISE_RAD = 0.0002, 0.002
-"""Of a good tracking system. Without any, poses would repeat and look frozen."""
+GOOD_SYSTEM = TrackerSettings(noise_m=0.0002, noise_rad=0.002, loss=0.0)
+"""Without any noise, robots that stand would repeat to the last bit and look frozen."""
 
 
 class Circles:
@@ -42,7 +43,7 @@ class Circles:
             (place.south_m + place.north_m) / 2 + radius_m * math.sin(angle_rad),
             angle_rad + math.pi / 2,
         )
-        return TrackedPose(robot.id, measured(pose, self._rng), t_ns)
+        return TrackedPose(robot.id, _seen(pose, self._rng), t_ns)
 
 
 class TruthOfRun:
@@ -66,14 +67,9 @@ class TruthOfRun:
         found = topics.topic_of(sample.key)
         truth = decode(pb.Truth, sample.payload)
         true_pose = Pose(truth.x_m, truth.y_m, truth.theta_rad)
-        return TrackedPose(found[1] if found else "", measured(true_pose, self._rng), t_ns)
+        return TrackedPose(found[1] if found else "", _seen(true_pose, self._rng), t_ns)
 
 
-def measured(pose: Pose, rng: np.random.Generator) -> Pose:
-    """A pose as a good tracking system measures it."""
-    x_noise, y_noise, turn_noise = rng.standard_normal(3).tolist()
-    return Pose(
-        pose.x_m + NOISE_M * x_noise,
-        pose.y_m + NOISE_M * y_noise,
-        wrap_angle_rad(pose.theta_rad + NOISE_RAD * turn_noise),
-    )
+def _seen(pose: Pose, rng: np.random.Generator) -> Pose:
+    """A pose as a good tracking system measures it; such a system loses nobody."""
+    return measured(pose, GOOD_SYSTEM, rng.standard_normal(3).tolist(), loss=1.0) or pose

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from swarm.errors import UserError
+from swarm.extras import require_extra
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
@@ -24,10 +25,9 @@ def is_log(path: Path) -> bool:
 
 def read_log(path: Path) -> list[TrackedPose]:
     """Every pose, in the order of capture; UserError if there is none, or the lab extra is missing."""
-    try:
-        from swarm.logs.reader import LogReader
-    except ImportError as error:
-        raise UserError(f"{path}: logs need the lab extra: pip install 'swarm-runtime[lab]'") from error
+    require_extra("lab", "mcap")
+    from swarm.logs.reader import LogReader
+
     reader = LogReader(path, lambda channel: channel.topic is topics.POSE)
     found = [
         _tracked(part.channel.publisher, pb.Pose.FromString(payload))
