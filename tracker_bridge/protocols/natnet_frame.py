@@ -23,6 +23,7 @@ from tracker_bridge.protocols.natnet import Version
 F64 = Struct("<d")
 BODY = Struct("<i3f4f")
 TICKS = Struct("<3Q")
+TIMECODE = Struct("<2I")
 PRECISE_TIME = Struct("<2I")
 AFTER_TIMES = Struct("<Hi")
 """The frame's parameters and the end mark."""
@@ -112,22 +113,15 @@ class _FrameReader:
         self._version = version
 
     def frame(self) -> Frame:
-        cursor, version = self._cursor, self._version
-        number = cursor.number(I32)
+        number = self._cursor.number(I32)
         marker_sets = self._section(9, self._marker_set)
-        others = self._section(12, cursor.vector)
+        others = self._section(12, self._cursor.vector)
         bodies = self._section(BODY.size, self._body)
         skeletons = dict(self._section(8, self._skeleton))
-        if version >= (4, 1):
+        if self._version >= (4, 1):
             self._skip_section()
         markers = self._section(20, self._labelled_marker)
-        if version >= (2, 9):
-            self._channels()
-        if version >= (3, 0):
-            self._channels()
-        else:
-            cursor.take(F32)
-        cursor.take(PRECISE_TIME)
+        self._pass_analog_data()
         timestamp_s, mid_exposure, transmit = self._times()
         flags = self._end()
         return Frame(
@@ -140,10 +134,19 @@ class _FrameReader:
             timestamp_s,
             mid_exposure,
             transmit,
-            bool(flags & RECORDING),
-            bool(flags & MODELS_CHANGED),
-            cursor.left,
+            recording=bool(flags & RECORDING),
+            models_changed=bool(flags & MODELS_CHANGED),
+            bytes_left=self._cursor.left,
         )
+
+    def _pass_analog_data(self) -> None:
+        """Force plates from 2.9 on, devices from 3.0 on; before 3.0, the server's latency."""
+        if self._version >= (2, 9):
+            self._channels()
+        if self._version >= (3, 0):
+            self._channels()
+        else:
+            self._cursor.take(F32)
 
     def _section(self, smallest_bytes: int, entry: Callable[[], T]) -> tuple[T, ...]:
         """A list; from 4.1 on its size in bytes stands behind the count, and has to be right."""
@@ -204,7 +207,8 @@ class _FrameReader:
         return LabelledMarker(marker, body, position_m, size_m, bool(flags & OCCLUDED), *solved, residual_m)
 
     def _times(self) -> tuple[float, int, int]:
-        """The server's seconds, and its ticks at mid-exposure and at sending."""
+        """Behind the timecode: the server's seconds, and its ticks at mid-exposure and at sending."""
+        self._cursor.take(TIMECODE)
         timestamp_s = self._cursor.number(F64 if self._version >= (2, 7) else F32)
         if not 0.0 <= timestamp_s <= LONGEST_S:
             raise DatagramError("a time that cannot be")

@@ -81,21 +81,18 @@ def _passed_over(cursor: Cursor, kind: int, version: Version) -> bool:
     if version >= (4, 1):
         return True
     if kind == SKELETON:
-        cursor.text()
-        cursor.take(I32)
-        for _ in range(cursor.count(20)):
-            _body(cursor, version)
+        _pass_skeleton(cursor, version)
     elif kind == FORCE_PLATE and version >= (3, 0):
         cursor.take(I32)
         cursor.text()
         cursor.take(_FORCE_PLATE)
-        _channel_names(cursor)
+        _pass_names(cursor)
     elif kind == DEVICE and version >= (3, 0):
         cursor.take(I32)
         cursor.text()
         cursor.text()
         cursor.take(_IDS)
-        _channel_names(cursor)
+        _pass_names(cursor)
     elif kind == CAMERA:
         cursor.text()
         cursor.block(7 * F32.size)
@@ -104,6 +101,13 @@ def _passed_over(cursor: Cursor, kind: int, version: Version) -> bool:
     return True
 
 
-def _channel_names(cursor: Cursor) -> None:
+def _pass_skeleton(cursor: Cursor, version: Version) -> None:
+    cursor.text()
+    cursor.take(I32)
+    for _ in range(cursor.count(20)):
+        _body(cursor, version)
+
+
+def _pass_names(cursor: Cursor) -> None:
     for _ in range(cursor.count(1)):
         cursor.text()

@@ -15,6 +15,7 @@ from tracker_bridge.protocols.natnet_frame import (
     POINT_CLOUD_SOLVED,
     PRECISE_TIME,
     TICKS,
+    TIMECODE,
     TRACKED,
     Frame,
     LabelledMarker,
@@ -73,7 +74,7 @@ def _marker(marker: LabelledMarker, version: Version) -> bytes:
 
 
 def _times(frame: Frame, version: Version) -> bytes:
-    packed = PRECISE_TIME.pack(0, 0)
+    packed = TIMECODE.pack(0, 0)
     packed += F64.pack(frame.timestamp_s) if version >= (2, 7) else pack("<f", frame.timestamp_s)
     if version >= (3, 0):
         packed += TICKS.pack(frame.mid_exposure_ticks, frame.mid_exposure_ticks, frame.transmit_ticks)
