@@ -8,8 +8,12 @@ from itertools import permutations, product
 import numpy as np
 import pytest
 
+from swarm.config.experiment import TrackerSettings
+from swarm.errors import UserError
 from swarm.geometry import Pose, wrap_angle_rad
+from tests.support.tracked_swarm import tracked_experiment
 from tracker_bridge.arena_frame import ArenaFrame, from_rotation_vector, from_xyz_angles, to_xyz_angles
+from tracker_bridge.backends.bodies import Body, Roster
 from tracker_bridge.protocols.cursor import Quaternion
 
 RIGHT_HANDED = [
@@ -97,3 +101,15 @@ def test_vicons_angles_are_about_x_then_y_then_z() -> None:
 def test_a_rotation_vector_longer_than_a_half_turn_is_the_other_way_round() -> None:
     assert np.allclose(matrix(from_rotation_vector((0.0, 0.0, 6.0))), about(2, 6.0))
     assert from_rotation_vector((0.0, 0.0, 0.0)) == (0.0, 0.0, 0.0, 1.0)
+
+
+def test_a_robots_body_is_the_one_that_the_experiment_names() -> None:
+    """A body that bears a robot's name but is not its body is a stranger."""
+    roster = Roster(tracked_experiment(TrackerSettings(), ("a", "b"), ("hat 1", "hat 2")), 1.0)
+    bodies = [Body(name, (1.0, 0.5, 0.08), (0.0, 0.0, 0.0, 1.0)) for name in ("hat 1", "a", "wand")]
+    assert [tracked.robot for tracked in roster.tracked(bodies, 0, 0)] == ["a", "body a", "wand"]
+
+
+def test_two_robots_cannot_have_one_body() -> None:
+    with pytest.raises(UserError, match="two robots have the same body"):
+        Roster(tracked_experiment(TrackerSettings(), ("a", "b"), ("hat", "hat")), 1.0)

@@ -35,20 +35,23 @@ class Roster:
     def __init__(self, experiment: Experiment, unit_m: float) -> None:
         """`unit_m` is the system's own unit, unless the experiment names another."""
         self._robots = {robot.body or robot.id: robot for robot in experiment.robot}
+        self._ids = {robot.id for robot in experiment.robot}
+        if len(self._robots) < len(experiment.robot):
+            raise UserError("two robots have the same body: every [[robot]] needs one of its own")
         self._frame = arena_frame(experiment, unit_m)
         self._drives: dict[str, DrivenHeading] = {}
 
     def tracked(
         self, bodies: Iterable[Body], captured_t_ns: int, received_t_ns: int, source_t_ns: int = 0
     ) -> Iterator[TrackedPose]:
-        """The robots; a body that belongs to none keeps its own name."""
+        """The robots; a body that belongs to none keeps its own name, unless that is a robot's."""
         for body in bodies:
             robot = self._robots.get(body.name)
             placed = self._placed(body, robot.body_turn_rad if robot else 0.0)
             if placed is None:
                 continue
             yield TrackedPose(
-                robot.id if robot else body.name,
+                robot.id if robot else self._stranger(body.name),
                 placed.pose,
                 captured_t_ns,
                 received_t_ns,
@@ -58,6 +61,9 @@ class Roster:
                 placed.height_m,
                 placed.tilt_rad,
             )
+
+    def _stranger(self, name: str) -> str:
+        return f"body {name}" if name in self._ids else name
 
     def _placed(self, body: Body, turn_rad: float) -> Placement | None:
         if body.rotation:
