@@ -22,6 +22,8 @@ MOST_AT_ONCE = 2_000
 """A flood may not keep the bridge from its robots: what is left waits for the next tick."""
 OLDEST_NS = 10 * NS_PER_S
 """A receive buffer of 4 MB does not hold more of any stream."""
+ONE_MOMENT_NS = 100_000
+"""Looking at three clocks takes 1 us."""
 MOST_SENDERS = 100
 """Whoever invents senders may not fill the memory."""
 
@@ -108,17 +110,26 @@ class DatagramSocket:
                 return
             except OSError:
                 continue  # an answer "port unreachable" to something sent before
-            yield Datagram(data, f"{host}:{port}", time.monotonic_ns() - _age_ns(notes))
+            yield Datagram(data, f"{host}:{port}", _received_ns(notes))
 
     def close(self) -> None:
         self._socket.close()
 
 
-def _age_ns(notes: list[tuple[int, int, bytes]]) -> int:
-    """How long ago the kernel received a datagram; 0 where it does not say, or the clock was set."""
+def _received_ns(notes: list[tuple[int, int, bytes]]) -> int:
+    """When the kernel had a datagram; now, where it does not say, or its clock was set meanwhile."""
+    monotonic_ns, unix_ns = _now_ns()
     for _, kind, data in notes:
         if kind == _SO_TIMESTAMPNS and len(data) == _TIMESPEC.size:
             seconds, nanoseconds = _TIMESPEC.unpack(data)
-            age_ns: int = time.time_ns() - seconds * NS_PER_S - nanoseconds
-            return age_ns if 0 <= age_ns < OLDEST_NS else 0
-    return 0
+            age_ns: int = unix_ns - seconds * NS_PER_S - nanoseconds
+            return monotonic_ns - age_ns if 0 <= age_ns < OLDEST_NS else monotonic_ns
+    return monotonic_ns
+
+
+def _now_ns() -> tuple[int, int]:
+    """Monotonic and Unix time of one moment, even if the process was put aside between two looks."""
+    while True:
+        monotonic_ns, unix_ns, again_ns = time.monotonic_ns(), time.time_ns(), time.monotonic_ns()
+        if again_ns - monotonic_ns < ONE_MOMENT_NS:
+            return monotonic_ns, unix_ns
