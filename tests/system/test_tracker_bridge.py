@@ -15,7 +15,7 @@ from swarm.messages import topics
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 from tests.support.natnet_capture import NATNET
-from tests.support.swarm_runs import ROOT, experiment_text, write_experiment
+from tests.support.swarm_runs import ROOT, experiment_text, server_command, write_experiment
 from tests.support.tracked_swarm import LOOPBACK, free_udp_port
 
 COMMAND = [sys.executable, "-m", "tracker_bridge"]
@@ -91,6 +91,31 @@ def test_poses_of_an_emulated_swarm_reach_the_swarm(experiment: Path) -> None:
     for pose in seen.values():
         assert 0 <= pose.received_t_ns - pose.captured_t_ns < 10**9
         assert 0 <= pose.y_m <= 1.3
+
+
+def test_a_robot_learns_by_poses_from_an_emulated_system(experiment: Path, tmp_path: Path) -> None:
+    """The whole chain in real time: the truth becomes the system's bytes, and those a robot's pose."""
+    file, endpoint = experiment, free_endpoint()
+    common = ["--connect", endpoint, "--moves", "3"]
+    server = subprocess.Popen(
+        [*server_command(file, tmp_path / "log"), "--listen", endpoint, "--moves", "3"],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+    )
+    robots = [
+        subprocess.Popen([sys.executable, "-m", "robot_agent", file, *common, "--robot", robot], cwd=ROOT)
+        for robot in ("expert", "imitator", "loner")
+    ]
+    others = [
+        started(file, "--connect", endpoint),
+        started("emulate", system_of(file), file, "--connect", endpoint),
+    ]
+    output, _ = server.communicate()
+    for process in (*robots, *others):
+        process.terminate()
+        process.wait()
+    assert server.returncode == 0
+    assert json.loads(output)["moves"] >= 6
 
 
 def test_places_are_asked_for_one_after_the_other(tmp_path: Path) -> None:
