@@ -100,7 +100,7 @@ class Survey:
             [_report(robot, seen, seconds) for robot, seen in self._robots.items() if seen.poses],
             [robot for robot, seen in self._robots.items() if not seen.poses],
             dict(self._strangers),
-            likely_mistakes(self._kept, arena.width_m, arena.height_m),
+            likely_mistakes(self._kept, arena.width_m, arena.height_m) + sorted(arrivals.hints),
         )
 
     @property

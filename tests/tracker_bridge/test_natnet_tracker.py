@@ -122,6 +122,14 @@ def test_a_pose_is_as_old_as_the_server_says() -> None:
     assert pose.source_t_ns == 1_416_497_730_518 * 10**9 // 3_312_787
 
 
+def test_a_server_that_sends_to_a_group_says_so() -> None:
+    """The captured one does; who listens for its own packets alone would hear nothing."""
+    with connected("") as (_, tracker):
+        assert tracker.arrivals.hints == {f'the server sends to a group: multicast = "{MULTICAST_GROUP}"'}
+    with connected(MULTICAST_GROUP) as (_, tracker):
+        assert not tracker.arrivals.hints
+
+
 def test_an_independent_client_sees_the_same() -> None:
     theirs: dict[int, independent.DataFrame] = {}
     ours: dict[int, Frame] = {}

@@ -48,6 +48,8 @@ class Arrivals:
     senders: Counter[str] = field(default_factory=Counter)
     refused: Counter[str] = field(default_factory=Counter)
     """Datagrams by the reason for which they were refused."""
+    hints: set[str] = field(default_factory=set)
+    """What the sender said that does not fit the experiment's [tracker] table."""
 
     def count(self, sender: str) -> None:
         known = sender in self.senders or len(self.senders) < MOST_SENDERS

@@ -121,6 +121,8 @@ class NatNetTracker:
             raise DatagramError("of a NatNet version that is not known; 2.5 to 4.1 are")
         self.info = info
         self._asked_ns = None
+        if info.is_multicast and info.group != self._settings.multicast:
+            self.arrivals.hints.add(f'the server sends to a group: multicast = "{info.group}"')
 
     def _checked(self, frame: Frame) -> Frame:
         if frame.bytes_left:
