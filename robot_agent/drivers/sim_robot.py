@@ -11,6 +11,7 @@ from collections import deque
 from robot_agent.drivers.body import WheelSpeeds, WheelSteps
 from robot_agent.drivers.camera import Camera
 from robot_agent.drivers.camera_model import CameraModel
+from robot_agent.drivers.deadline import STOP_WITHIN_S
 from robot_agent.drivers.driver import DriverParts
 from robot_agent.drivers.sim import BodyFaults, SimulatedBody
 from swarm import keys
@@ -72,6 +73,7 @@ class SimulatedDriver:
             Pose(*compartment.centre(compartment.grid.start), 0.0),
             compartment,
             parts.generator("body"),
+            obeys_for_s=STOP_WITHIN_S,
         )
         self.body = SimulatedRobot(body, parts.link, parts.robot.id)
 
