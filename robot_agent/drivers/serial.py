@@ -106,7 +106,9 @@ class SerialLink:
     def _version(self) -> str:
         for _ in range(VERSION_ATTEMPTS):
             self._line.send(b"V\r")
-            answer = self._line.receive_until(lambda data: b"v," in data and b"\r\n" in data, VERSION_WITHIN_S)
+            answer = self._line.receive_until(
+                lambda data: b"v," in data and b"\r\n" in data, VERSION_WITHIN_S
+            )
             answer += self._line.drain(QUIET_S)
             if found := re.search(rb"v,([ -~]+)", answer):
                 return found[1].decode("ascii")

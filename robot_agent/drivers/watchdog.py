@@ -38,7 +38,9 @@ class Watchdog:
     """What the process does, with time as an argument: `now_ns` is the machine's monotonic clock, run at
     the run's speed."""
 
-    def __init__(self, open_link: OpenLink, now_ns: Callable[[], int], report: Callable[[bytes], None]) -> None:
+    def __init__(
+        self, open_link: OpenLink, now_ns: Callable[[], int], report: Callable[[bytes], None]
+    ) -> None:
         self._open_link = open_link
         self._now_ns = now_ns
         self._report = report
@@ -67,7 +69,8 @@ class Watchdog:
 
     def obey(self, request: Request) -> Answer:
         """Take a command over unless it is stale, speak with the robot, and answer the agent."""
-        if request.drives and request.deadline_ns > self._now_ns():
+        stands = not (request.left or request.right)
+        if request.drives and (stands or request.deadline_ns > self._now_ns()):
             self._wanted = Actuators(request.left, request.right, request.lights)
             self._deadline_ns = request.deadline_ns
         elif request.drives:

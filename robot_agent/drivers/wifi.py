@@ -61,7 +61,7 @@ class Stream:
         """The newest image: RGB565, high byte first."""
 
     def take(self, data: bytes) -> list[bytes]:
-        """The sensor blocks that are complete now. LinkError if the cut is lost: a new connection finds it."""
+        """The sensor blocks that are complete now. LinkError if the place of the headers is lost."""
         self._waiting += data
         blocks = []
         while self._waiting:

@@ -14,10 +14,7 @@ import numpy as np
 from robot_agent.emulator.all_sensors import battery_raw, sensor_block
 from robot_agent.emulator.robot import EmulatedRobot
 
-GREETING = (
-    b"\f\aWELCOME to the SerCom protocol on e-Puck\r\n"
-    b'the EPFL education robot type "H" for help\r\n'
-)
+GREETING = b'\f\aWELCOME to the SerCom protocol on e-Puck\r\nthe EPFL education robot type "H" for help\r\n'
 VERSIONS = {
     "epuck1": b"v,Version 1.2.2 August 2008 GCtronic\r\nHW version: 13\r\n",
     "epuck2": b"v,Version 2.0 January 2018 GCtronic\r\nHW version: 0\r\n",
@@ -89,9 +86,11 @@ class Asercom:
     def _binary(self, command: str, arguments: bytes, t_ns: int) -> bytes:
         robot = self._robot
         if command == "D":
-            robot.drive(*struct.unpack("<hh", arguments), t_ns)
+            left, right = struct.unpack("<hh", arguments)
+            robot.drive(left, right, t_ns)
         elif command == "P":
-            robot.set_counters(*struct.unpack("<hh", arguments), t_ns)
+            left, right = struct.unpack("<hh", arguments)
+            robot.set_counters(left, right, t_ns)
         elif command == "L":
             self._light(*arguments)
         elif command == "\x09" and self._model == "epuck2":
@@ -160,7 +159,8 @@ class Asercom:
         if command == "R":
             return self._reset(t_ns)
         if command == "S" or (command == "D" and len(numbers) == 2):
-            robot.drive(*(numbers if command == "D" else (0, 0)), t_ns)
+            left, right = numbers if command == "D" else (0, 0)
+            robot.drive(left, right, t_ns)
             return command.lower().encode() + b"\r\n"
         if command == "P" and len(numbers) == 2:
             robot.set_counters(numbers[0], numbers[1], t_ns)

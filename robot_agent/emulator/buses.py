@@ -27,7 +27,7 @@ class EmulatedSmbus:
         self.close = close
 
     def i2c_rdwr(self, *messages: Any) -> None:
-        """One transaction: what the write messages say, then the bytes that the read messages have room for."""
+        """One transaction: what the messages write, then as many bytes as they read."""
         written = b"".join(bytes(message) for message in messages if not message.flags & _I2C_READ)
         reading = [message for message in messages if message.flags & _I2C_READ]
         data = self._transfer(messages[0].addr, written, sum(message.len for message in reading))

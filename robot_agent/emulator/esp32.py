@@ -26,8 +26,11 @@ IMAGE_EVERY_NS = 140 * NS_PER_S // 1000
 class Esp32:
     """One connection at a time; what it sends depends on the clock and the last command."""
 
-    def __init__(self, robot: EmulatedRobot, rng: np.random.Generator) -> None:
+    def __init__(
+        self, robot: EmulatedRobot, rng: np.random.Generator, cycle_ns: int = SENSORS_EVERY_NS
+    ) -> None:
         self._robot = robot
+        self._cycle_ns = cycle_ns
         self._rng = rng
         self._request = 0
         self._asked = False
@@ -55,7 +58,7 @@ class Esp32:
         if not self._asked or t_ns < self._due_ns:
             return b""
         faults, rng = self._robot.faults, self._rng
-        self._due_ns = t_ns + (IMAGE_EVERY_NS if self._request & 1 else SENSORS_EVERY_NS)
+        self._due_ns = t_ns + (IMAGE_EVERY_NS if self._request & 1 else self._cycle_ns)
         if faults.stall and rng.random() < faults.stall:
             self._due_ns = t_ns + round(faults.stall_s * NS_PER_S)
             return b""

@@ -100,7 +100,7 @@ class YorkSlave:
             robot.lights = robot.lights & 0xFF | (data[0] & 1) << 9 | (data[0] & 2) << 7
         elif register in (2, 3) and len(data) == 2:
             self._speeds[register - 2] = value
-            robot.drive(*self._speeds, t_ns)
+            robot.drive(self._speeds[0], self._speeds[1], t_ns)
         elif register == 6:
             self._infra_red = bool(data[0])
 

@@ -1,0 +1,107 @@
+"""Puts an emulated robot together: wheels, firmware, and the port where it can be reached."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from robot_agent.drivers.epuck import EpuckGeometry
+from robot_agent.drivers.motors import EPUCK1, EPUCK2, YORK, StepperMotors
+from robot_agent.drivers.sim import BodyFaults, SimulatedBody
+from robot_agent.emulator.asercom import Asercom
+from robot_agent.emulator.esp32 import Esp32
+from robot_agent.emulator.faults import Faults
+from robot_agent.emulator.i2c_slaves import GumstixSlave, I2cSlave, YorkSlave
+from robot_agent.emulator.lpuck import LpuckSlave
+from robot_agent.emulator.ports import BusPort, Port, SerialPort, WifiPort
+from robot_agent.emulator.robot import EmulatedRobot
+from swarm.geometry import Compartment, Pose
+
+LINKS = ("serial", "wifi", "i2c", "spi")
+MODELS = ("epuck1", "epuck2")
+SELECTORS = {"serial": 3, "wifi": 15, "i2c": 10, "spi": 10}
+"""Where each link's firmware needs the selector to be."""
+FASTEST_STEPS_PER_S = 1200.0
+"""Above all firmwares' limits: here nothing is clipped but by the firmware."""
+
+
+@dataclass(frozen=True)
+class RobotToEmulate:
+    """Which robot is emulated, where it stands, and what goes wrong with it."""
+
+    link: str
+    walls: Compartment
+    pose: Pose
+    model: str = "epuck2"
+    body: BodyFaults = field(default_factory=lambda: BodyFaults(0.0, 0.0, 0.0))
+    faults: Faults = field(default_factory=Faults)
+
+
+class Emulation:
+    """One robot and its port; a context manager that serves for as long as the block runs."""
+
+    def __init__(
+        self,
+        wanted: RobotToEmulate,
+        place: Path,
+        name: str,
+        now_ns: Callable[[], int],
+        rng: np.random.Generator,
+    ) -> None:
+        body_rng, link_rng = rng.spawn(2)
+        geometry = EpuckGeometry(max_steps_per_s=FASTEST_STEPS_PER_S)
+        body = SimulatedBody(geometry, wanted.body, wanted.pose, wanted.walls, body_rng)
+        self.robot = EmulatedRobot(body, _motors(wanted), wanted.walls, wanted.faults, SELECTORS[wanted.link])
+        self.lock = threading.Lock()
+        """Held by whoever touches the robot while it is served."""
+        self.port = _port(wanted, self.robot, place / name, now_ns, self.lock, link_rng)
+
+    @property
+    def address(self) -> str:
+        """What a driver is to be given as the robot's address."""
+        return self.port.address
+
+    def __enter__(self) -> Emulation:
+        self.port.start()
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.port.close()
+
+
+def _motors(wanted: RobotToEmulate) -> StepperMotors:
+    if wanted.model == "epuck2" and wanted.link != "spi":
+        return EPUCK2
+    return YORK if wanted.link == "i2c" else EPUCK1
+
+
+def _port(
+    wanted: RobotToEmulate,
+    robot: EmulatedRobot,
+    at: Path,
+    now_ns: Callable[[], int],
+    lock: threading.Lock,
+    rng: np.random.Generator,
+) -> Port:
+    """The port of a link; where it is in the file system, if it is."""
+    faults = wanted.faults
+    if wanted.link == "serial":
+        firmware = Asercom(robot, wanted.model, rng)
+        return SerialPort(firmware, at.with_suffix(".tty"), now_ns, lock, faults)
+    if wanted.link == "wifi":
+        return WifiPort(Esp32(robot, rng), 0, now_ns, lock, faults)
+    if wanted.link == "spi":
+        lpuck = LpuckSlave(robot, rng)
+        return BusPort(
+            None, lambda sent: lpuck.transfer(sent, now_ns()), at.with_suffix(".spi"), now_ns, lock, faults
+        )
+    slave: I2cSlave = GumstixSlave(robot, rng) if wanted.model == "epuck2" else YorkSlave(robot, rng)
+
+    def i2c(address: int, written: bytes, count: int) -> bytes:
+        return slave.transfer(address, written, count, now_ns())
+
+    return BusPort(i2c, None, at.with_suffix(".i2c"), now_ns, lock, faults)
