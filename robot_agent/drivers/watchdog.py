@@ -141,6 +141,13 @@ class Watchdog:
             self._link = None
 
 
+def link_opener(opener: str) -> Callable[[str], RobotLink]:
+    """The function that MODULE:FUNCTION names."""
+    module, _, function = opener.partition(":")
+    found: Callable[[str], RobotLink] = getattr(importlib.import_module(module), function)
+    return found
+
+
 def serve(agent: socket.socket, watchdog: Watchdog, now_ns: Callable[[], int], speed: float) -> None:
     """Obey the agent until it is gone, and then stop the robot."""
     while (request := _next_request(agent, watchdog, now_ns, speed)) is not None:
@@ -179,8 +186,7 @@ def main() -> None:
         signal.signal(number, signal.SIG_IGN)
     with suppress(OSError, AttributeError):
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
-    module, _, function = opener.partition(":")
-    open_link = getattr(importlib.import_module(module), function)
+    open_link = link_opener(opener)
     speed = float(speed_text)
 
     def now_ns() -> int:

@@ -13,7 +13,7 @@ from robot_agent.drivers.epuck import EpuckGeometry
 from robot_agent.drivers.motors import EPUCK1, EPUCK2, YORK, StepperMotors
 from robot_agent.drivers.sim import BodyFaults, SimulatedBody
 from robot_agent.emulator.asercom import Asercom
-from robot_agent.emulator.esp32 import Esp32
+from robot_agent.emulator.esp32 import SENSORS_EVERY_NS, Esp32
 from robot_agent.emulator.faults import Faults
 from robot_agent.emulator.i2c_slaves import GumstixSlave, I2cSlave, YorkSlave
 from robot_agent.emulator.lpuck import LpuckSlave
@@ -39,6 +39,7 @@ class RobotToEmulate:
     model: str = "epuck2"
     body: BodyFaults = field(default_factory=lambda: BodyFaults(0.0, 0.0, 0.0))
     faults: Faults = field(default_factory=Faults)
+    wifi_cycle_ns: int = SENSORS_EVERY_NS
 
 
 class Emulation:
@@ -93,7 +94,7 @@ def _port(
         firmware = Asercom(robot, wanted.model, rng)
         return SerialPort(firmware, at.with_suffix(".tty"), now_ns, lock, faults)
     if wanted.link == "wifi":
-        return WifiPort(Esp32(robot, rng), 0, now_ns, lock, faults)
+        return WifiPort(Esp32(robot, rng, wanted.wifi_cycle_ns), 0, now_ns, lock, faults)
     if wanted.link == "spi":
         lpuck = LpuckSlave(robot, rng)
         return BusPort(
