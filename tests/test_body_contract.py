@@ -43,7 +43,8 @@ def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[BodyRig]:
     if request.param == "sim":
         yield SimulatedRig()
         return
-    emulated = EmulatedRig(*request.param.split("-"), tmp_path)
+    link, model = request.param.split("-")
+    emulated = EmulatedRig(link, model, tmp_path)
     yield emulated
     emulated.close()
 

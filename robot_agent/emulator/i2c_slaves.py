@@ -84,6 +84,7 @@ class YorkSlave:
         self._rng = rng
         self._speeds = [0, 0]
         self._infra_red = False
+        self._tears: dict[int, int] = {}
 
     def transfer(self, address: int, written: bytes, count: int, t_ns: int) -> bytes:
         fail_sometimes(self._robot, address, self._rng)
@@ -109,15 +110,21 @@ class YorkSlave:
         if register in (2, 3):
             return struct.pack("<h", self._speeds[register - 2])
         if register in (4, 5):
-            return self._torn(robot.counters(t_ns)[register - 4], robot.commanded[register - 4])
+            return self._torn(register, robot.counters(t_ns)[register - 4])
         if 7 <= register <= 14:
             return struct.pack("<h", robot.proximity(t_ns)[register - 7] if self._infra_red else 0)
         return struct.pack("<H", robot.ambient()[register - 15] if 15 <= register <= 22 else 0)
 
-    def _torn(self, count: int, speed: int) -> bytes:
-        """The low byte of one moment and the high byte of the next; 1 in 2 when a carry is near."""
-        later = count + (int(self._rng.integers(2)) if speed > 0 else -int(self._rng.integers(2)))
-        return bytes((count & 0xFF, (later if speed else count) >> 8 & 0xFF))
+    def _torn(self, register: int, count: int) -> bytes:
+        """The low byte of one moment and the high byte of the next: when the wheel's next step is a carry, it
+        comes in between with a chance of 1 in 2. One carry comes once."""
+        speed = self._robot.commanded[register - 4]
+        later = count + (speed > 0) - (speed < 0)
+        tears = later >> 8 != count >> 8 and self._tears.get(register) != count
+        if tears and self._rng.integers(2):
+            self._tears[register] = count
+            count = later & 0xFF00 | count & 0xFF
+        return struct.pack("<H", count & 0xFFFF)
 
 
 def fail_sometimes(robot: EmulatedRobot, address: int, rng: np.random.Generator) -> None:
