@@ -62,6 +62,13 @@ class RobotLink(Protocol):
         """Let go of the link; the wheels stay as they are."""
 
 
+def require_agreement(first: Reading, second: Reading, steps: int) -> None:
+    """ReplyError if the counters of two readings lie further apart than the wheels can have turned."""
+    moved = wrapped_difference(second.left, first.left), wrapped_difference(second.right, first.right)
+    if max(map(abs, moved)) > steps:
+        raise ReplyError(f"the counters moved by {moved} between two readings")
+
+
 def wrapped_difference(later: int, earlier: int) -> int:
     """How far a 16-bit counter went from one reading to another, by the shorter way."""
     return ((later - earlier + 0x8000) & 0xFFFF) - 0x8000

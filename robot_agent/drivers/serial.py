@@ -12,7 +12,7 @@ import struct
 
 from robot_agent.drivers.byte_line import ByteLine, Port
 from robot_agent.drivers.motors import EPUCK1, EPUCK2
-from robot_agent.drivers.robot_link import Actuators, LinkError, Reading, ReplyError, wrapped_difference
+from robot_agent.drivers.robot_link import Actuators, LinkError, Reading, ReplyError, require_agreement
 
 BAUD = 115_200
 RFCOMM_CHANNELS = (2, 1)
@@ -58,18 +58,21 @@ def parsed_reply(reply: bytes) -> Reading:
     if len(reply) < _REPLY.size:
         raise ReplyError(f"{len(reply)} bytes of {_REPLY.size} came")
     left, right, *echoes, battery, left_after, right_after = _REPLY.unpack(reply[-_REPLY.size :])
-    moved = wrapped_difference(left_after, left), wrapped_difference(right_after, right)
-    if max(map(abs, moved)) > MOST_STEPS_BETWEEN:
-        raise ReplyError(f"the counters moved by {moved} within one answer")
     volts = battery / BATTERY_COUNTS_PER_V if battery >= LEAST_BATTERY_COUNTS else 0.0
-    return Reading(left_after, right_after, tuple(echoes), volts).checked()
+    reading = Reading(left_after, right_after, tuple(echoes), volts).checked()
+    require_agreement(Reading(left, right), reading, MOST_STEPS_BETWEEN)
+    return reading
 
 
 class SerialLink:
     """An e-puck at the other end of a line of bytes."""
 
-    def __init__(self, line: ByteLine) -> None:
+    def __init__(
+        self, line: ByteLine, reply_within_s: float = REPLY_WITHIN_S, quiet_s: float = QUIET_S
+    ) -> None:
         self._line = line
+        self._reply_within_s = reply_within_s
+        self._quiet_s = quiet_s
         self._lights = 0
         self._silent = 0
         self.resynchronise()
@@ -80,13 +83,15 @@ class SerialLink:
     def exchange(self, actuators: Actuators) -> Reading:
         if self._silent >= SILENT_BEFORE_RESYNCHRONISING:
             self.resynchronise()
+        # An answer that came too late for the last exchange would else be taken for this one's, for ever.
+        self._line.receive(0.0)
         self._line.send(command_batch(actuators, self._lights))
-        reply = self._line.receive_until(lambda data: len(data) >= _REPLY.size, REPLY_WITHIN_S)
+        reply = self._line.receive_until(lambda data: len(data) >= _REPLY.size, self._reply_within_s)
         self._silent = 0 if reply else self._silent + 1
         try:
             reading = parsed_reply(reply)
         except ReplyError:
-            self._line.drain(QUIET_S)
+            self._line.drain(self._quiet_s)
             raise
         self._lights = actuators.lights
         return Reading(reading.left, reading.right, reading.proximity, reading.battery_v, self._selector)
@@ -97,9 +102,9 @@ class SerialLink:
         A text command ends in one CR alone: the LF of a CR LF would swallow the next batch.
         """
         self._line.send(bytes(LONGEST_BATCH) + struct.pack("<BhhB", _code("D"), 0, 0, 0))
-        self._line.drain(QUIET_S)
+        self._line.drain(self._quiet_s)
         self._line.send(b"\r")
-        self._line.drain(QUIET_S)
+        self._line.drain(self._quiet_s)
         self._silent = 0
         self._lights = 0
 
@@ -109,7 +114,7 @@ class SerialLink:
             answer = self._line.receive_until(
                 lambda data: b"v," in data and b"\r\n" in data, VERSION_WITHIN_S
             )
-            answer += self._line.drain(QUIET_S)
+            answer += self._line.drain(self._quiet_s)
             if found := re.search(rb"v,([ -~]+)", answer):
                 return found[1].decode("ascii")
         raise LinkError("the robot does not tell its version: is its selector at 3 (Bluetooth) or 8 (USB)?")

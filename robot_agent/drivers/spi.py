@@ -9,7 +9,7 @@ import struct
 from typing import Protocol
 
 from robot_agent.drivers.motors import EPUCK1
-from robot_agent.drivers.robot_link import Actuators, LinkError, Reading, ReplyError
+from robot_agent.drivers.robot_link import Actuators, LinkError, Reading, ReplyError, require_agreement
 
 DEVICE = "/dev/spidev1.0"
 EMULATED = "unix:"
@@ -21,6 +21,8 @@ RESERVED_WORDS = 21
 """The robot's processor sees the transfer one word late, hence a spare word at the end."""
 TRANSFERS_BEFORE_LOST = 25
 """So many failures in a row, and the robot counts as gone."""
+MOST_STEPS_BETWEEN = 4
+"""Two transfers follow each other within 1 ms."""
 _REPLY = struct.Struct("<8H3h3H8HHHH")
 
 
@@ -44,6 +46,8 @@ def parsed_reply(reply: bytes) -> Reading:
 
     The battery's unit is not documented, so the volts stay unknown.
     """
+    if len(reply) != _REPLY.size:
+        raise ReplyError(f"{len(reply)} bytes of {_REPLY.size} came")
     words = _REPLY.unpack(reply)
     echoes, ambient = words[:8], words[14:22]
     if any(level > 4095 for level in ambient):
@@ -67,9 +71,12 @@ class SpiLink:
             raise LinkError(f"no robot answers over SPI: {error}") from error
 
     def exchange(self, actuators: Actuators) -> Reading:
+        """Two transfers: there is no checksum, so that the counters of both have to agree."""
+        command = list(command_bytes(actuators))
         try:
-            reply = bytes(self._device.xfer2(list(command_bytes(actuators))))
-            reading = parsed_reply(reply)
+            first = parsed_reply(bytes(self._device.xfer2(command)))
+            reading = parsed_reply(bytes(self._device.xfer2(command)))
+            require_agreement(first, reading, MOST_STEPS_BETWEEN)
         except OSError as error:
             self._fail(ReplyError(f"the transfer failed: {error}"))
         except ReplyError as error:

@@ -84,8 +84,14 @@ class WifiLink:
 
     motors = EPUCK2
 
-    def __init__(self, line: ByteLine, monotonic_s: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        line: ByteLine,
+        reply_within_s: float = REPLY_WITHIN_S,
+        monotonic_s: Callable[[], float] = time.monotonic,
+    ) -> None:
         self._line = line
+        self._reply_within_s = reply_within_s
         self._monotonic_s = monotonic_s
         self._stream = Stream()
         self._images = False
@@ -96,7 +102,7 @@ class WifiLink:
         self.identity = f"e-puck2 Wi-Fi, selector {selector}"
 
     def exchange(self, actuators: Actuators) -> Reading:
-        return self._exchange(actuators, REPLY_WITHIN_S)
+        return self._exchange(actuators, self._reply_within_s)
 
     def _exchange(self, actuators: Actuators, within_s: float) -> Reading:
         """What came before the command is old: only its images are of use."""
