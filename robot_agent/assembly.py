@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -28,14 +30,25 @@ from swarm.learning.random import spawned_generator
 from swarm.link import Link
 
 
+@dataclass(frozen=True)
+class Place:
+    """Where and in what time the robots are: what a command line says beside the experiment."""
+
+    addresses: Mapping[str, str] = field(default_factory=dict)
+    """Of robots that are somewhere else than the experiment says: emulated ones."""
+    speed: float = 1.0
+    lockstep: bool = False
+
+
 class Assembly:
     """Makes the agents of one process for one trial."""
 
-    def __init__(self, experiment: Experiment, link: Link, trial: int) -> None:
+    def __init__(self, experiment: Experiment, link: Link, trial: int, place: Place | None = None) -> None:
         self._experiment = experiment
         self._link = link
         self._seed = experiment.run.seed
         self._trial = trial
+        self._place = place or Place()
 
     def agent(self, name: str) -> Agent:
         """The agent of the robot with this id."""
@@ -45,7 +58,12 @@ class Assembly:
             self._link.publish(topic, message, name)
 
         generator = partial(self._generator, robot)
-        parts = DriverParts(settings, robot, EpuckGeometry(), self._link, generator)
+        geometry = EpuckGeometry.calibrated(robot.wheel_diameter_m, robot.wheel_base_m)
+        place = self._place
+        address = place.addresses.get(name, robot.address)
+        parts = DriverParts(
+            settings, robot, geometry, self._link, generator, address, place.speed, place.lockstep
+        )
         driver = make_driver(parts)
         brain = self._brain(robot, publish)
         estimator = PoseEstimator(parts.geometry)

@@ -7,8 +7,9 @@ import sys
 from functools import partial
 from pathlib import Path
 
+from robot_agent.addresses import add_address_argument, addresses
 from robot_agent.agent import Agent
-from robot_agent.assembly import Assembly
+from robot_agent.assembly import Assembly, Place
 from robot_agent.checkpoint import Checkpoint
 from swarm.errors import UserError, nearest
 from swarm.experiment import Experiment
@@ -27,6 +28,14 @@ def _called(words: list[str]) -> None:
         from robot_agent.calibrating import calibrate, calibrate_parser
 
         calibrate(calibrate_parser().parse_args(words[1:]))
+    elif words[:1] == ["emulate"]:
+        from robot_agent.emulator.command import emulate, emulate_parser
+
+        emulate(emulate_parser().parse_args(words[1:]))
+    elif words[:1] == ["emulate-robots"]:
+        from robot_agent.emulator.in_run import emulate_robots, emulate_robots_parser
+
+        emulate_robots(emulate_robots_parser().parse_args(words[1:]))
     elif words[:1] == ["collect-copies"]:
         from robot_agent.collecting import collect, collect_parser
 
@@ -41,7 +50,8 @@ def run(arguments: argparse.Namespace) -> None:
     names = _names(arguments.robot, experiment)
     leave_on_signals()
     with joined(arguments, "robot", names, experiment.simulation.tick_s) as link:
-        assembly = Assembly(experiment, link, arguments.trial)
+        place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
+        assembly = Assembly(experiment, link, arguments.trial, place)
         agents = [assembly.agent(name) for name in names]
         if arguments.state:
             run = f"{experiment.run.name}, seed {experiment.run.seed}, trial {arguments.trial}"
@@ -91,6 +101,7 @@ def _parser() -> OneLineParser:
     )
     add_common_arguments(parser)
     parser.add_argument("--robot", default="", metavar="ID[,ID...]", help="which robot this is")
+    add_address_argument(parser)
     parser.add_argument(
         "--state",
         type=Path,

@@ -35,11 +35,12 @@ def run(arguments: argparse.Namespace) -> None:
     experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
     with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_bus:
         trials: Sequence[int] = range(experiment.run.trials)
-        set_stage = simulated(experiment, arguments.speed, progress.warn)
         if arguments.listen:
             settings = BusSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
             bus = open_bus.enter_context(Bus(settings))
             trials, set_stage = [arguments.trial], laboratory(experiment, bus, progress.warn)
+        else:
+            set_stage = simulated(experiment, arguments.speed, progress.warn, emulate=arguments.emulate)
         directory = RunDirectory.create(arguments.out, experiment.run.name)
         summary = Run(experiment, arguments.experiment, directory, set_stage, trials, progress).run()
     if arguments.json:
@@ -68,6 +69,11 @@ def _parser() -> OneLineParser:
         type=_speed,
         metavar="max|X",
         help="max: lockstep, as fast as possible, repeatable (the default); X: so many times as fast as life",
+    )
+    simulation.add_argument(
+        "--emulate",
+        action="store_true",
+        help="emulate the robots whose driver is serial, wifi, i2c or spi; needs --speed X",
     )
     real = parser.add_argument_group("laboratory")
     real.add_argument(

@@ -15,11 +15,12 @@ from server.hand import Hand, Operator, SimulatedHand
 from server.hub import Hub
 from server.live_hub import LiveHub
 from server.lockstep_hub import LockstepHub
-from server.run_table import Pace, run_table
+from server.run_table import Pace, emulated_addresses, run_table
 from server.supervisor import ProcessSpec, Supervisor
 from swarm.bus import Bus, BusSettings
 from swarm.clock import scaled_clock, unix_clock
-from swarm.experiment import Experiment
+from swarm.errors import UserError
+from swarm.experiment import REAL_LINKS, Experiment
 from swarm.lockstep import patient
 from swarm.presence import Presence, claim
 
@@ -44,8 +45,12 @@ SetStage = Callable[[int, Path, Path], AbstractContextManager[Stage]]
 Warn = Callable[[str], None]
 
 
-def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetStage:
-    """Processes on this machine, in lockstep (`speed` None) or so many times as fast as life."""
+def simulated(experiment: Experiment, speed: float | None, warn: Warn, *, emulate: bool = False) -> SetStage:
+    """Processes on this machine, in lockstep (`speed` None) or so many times as fast as life.
+
+    Robots with real links are emulated if `emulate` says so: UserError for one that could not be reached.
+    """
+    _require_emulation(experiment, speed, emulate=emulate)
 
     @contextmanager
     def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:
@@ -55,14 +60,28 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
             socket_endpoint() as endpoint,
             keeping_to(cores[0]) if pace.lockstep else nullcontext(),
             Bus(_hub_settings(endpoint, pace)) as bus,
+            TemporaryDirectory(prefix="robots-") as place,
         ):
-            specs = run_table(experiment, file, endpoint, trial, pace, output)
+            emulated = emulated_addresses(experiment, Path(place))
+            specs = run_table(experiment, file, endpoint, trial, pace, output, emulated)
             claim(bus, _presence())
             with Supervisor(specs, output, spread(len(specs), cores)) as supervisor:
                 hub, flush_every = _hub(experiment, bus, pace, specs, supervisor.check, warn)
                 yield Stage(hub, SimulatedHand(hub.publish), flush_every)
 
     return stage
+
+
+def _require_emulation(experiment: Experiment, speed: float | None, *, emulate: bool) -> None:
+    real = [robot for robot in experiment.robot if robot.driver in REAL_LINKS]
+    if real and not emulate:
+        raise UserError(
+            f"robot {real[0].id!r} has driver {real[0].driver!r}: a simulation needs --emulate and --speed X"
+        )
+    if emulate and speed is None:
+        raise UserError("--emulate needs --speed X: bytes on a link take their own time")
+    if emulate and not real:
+        raise UserError(f"--emulate: no robot's driver is one of {', '.join(REAL_LINKS)}")
 
 
 def _hub_settings(endpoint: str, pace: Pace) -> BusSettings:

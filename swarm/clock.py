@@ -47,7 +47,7 @@ class WallClock:
             due_ns += self._missed_ns(due_ns, period_ns) + period_ns
 
     def _missed_ns(self, due_ns: int, period_ns: int) -> int:
-        """The whole periods since a tick was due: a process that was stopped goes on from now, not from then."""
+        """The whole periods since a tick was due: a process that was stopped goes on from now."""
         missed = max(0, (self.now_ns() - due_ns) // period_ns)
         self.late_ticks += missed
         return missed * period_ns

@@ -24,6 +24,10 @@ NonNegative = Between(0)
 BEYOND_CORNER_M = 0.05
 
 
+REAL_LINKS = ("serial", "wifi", "i2c", "spi")
+"""Drivers of real robots; a simulation runs them against emulated ones."""
+
+
 class Role(Enum):
     """What a robot does in its compartment."""
 
@@ -176,7 +180,13 @@ class RobotSettings:
     south_west_m: tuple[float, float]
     """The compartment's corner in the arena frame."""
     driver: str = "sim"
-    """What moves it; see how-to-add-a-driver.md."""
+    """What moves it: sim, serial, wifi, i2c, spi (robots.md), or one of your own (how-to-add-a-driver.md)."""
+    address: str = ""
+    """Where a real robot is: a serial port or Bluetooth address, HOST:PORT, an I2C bus, an SPI device."""
+    wheel_diameter_m: Annotated[float, Between(0.03, 0.06)] = 0.041
+    """Of a real robot's wheels, as calibrated; 1000 steps are a turn."""
+    wheel_base_m: Annotated[float, Between(0.04, 0.07)] = 0.053
+    """Between a real robot's wheels, as calibrated; published values go from 52 to 57 mm."""
     role: Role = Role.LEARNER
     """A learner learns; an expert follows the shortest path indefinitely."""
     condition: str = ""

@@ -13,7 +13,7 @@ from robot_agent.drivers.epuck_driver import opener_of
 from robot_agent.drivers.robot_link import RobotLink
 from robot_agent.drivers.watchdog import Watchdog, link_opener
 from robot_agent.drivers.watchdog_messages import Request
-from robot_agent.emulator.emulation import Emulation, RobotToEmulate
+from robot_agent.emulator.emulation import Emulation, RobotToEmulate, default_address
 from robot_agent.emulator.faults import Faults
 from swarm.geometry import Compartment, Grid, Pose
 
@@ -72,7 +72,9 @@ class EmulatedRig:
         self.events: list[tuple[str, str]] = []
         self.clock = Clock(t_ns)
         wanted = RobotToEmulate(link, HALL, MIDDLE, model, faults=faults or Faults(), wifi_cycle_ns=0)
-        self.emulation = Emulation(wanted, place, "robot", self.clock.now_ns, np.random.default_rng(1))
+        self.emulation = Emulation(
+            wanted, default_address(link, place, "robot"), self.clock.now_ns, np.random.default_rng(1)
+        )
         self.emulation.__enter__()
         heard: deque[bytes] = deque()
         self.watchdog = Watchdog(lambda: self._opened(link), self.clock.now_ns, heard.append)

@@ -18,7 +18,7 @@ import pytest
 
 from robot_agent.drivers.body import STOPPED
 from robot_agent.drivers.deadline import STOP_WITHIN_S
-from robot_agent.emulator.emulation import Emulation, RobotToEmulate
+from robot_agent.emulator.emulation import Emulation, RobotToEmulate, default_address
 from robot_agent.emulator.robot import EmulatedRobot
 from tests.emulated_robot import HALL, LINKS, MIDDLE
 from tests.swarm_runs import ROOT
@@ -40,7 +40,8 @@ def driven(
 ) -> Iterator[tuple[Emulation, subprocess.Popen[bytes]]]:
     """A robot under way, and the process of its agent."""
     wanted = RobotToEmulate(link, HALL, MIDDLE, model)
-    with Emulation(wanted, place, "robot", time.monotonic_ns, np.random.default_rng(1)) as emulation:
+    address = default_address(link, place, "robot")
+    with Emulation(wanted, address, time.monotonic_ns, np.random.default_rng(1)) as emulation:
         command = [sys.executable, "-m", "tests.driving_agent", link, emulation.address, str(stops_at)]
         with subprocess.Popen(command, cwd=ROOT) as agent:
             try:

@@ -7,6 +7,10 @@ from dataclasses import dataclass
 
 from robot_agent.drivers.body import WheelSpeeds
 
+STEP_M = 0.1288e-3
+"""A wheel of 41 mm turns once in 1000 steps; the simulated robots' wheels too."""
+NOMINAL_DIAMETER_M = 0.041
+
 
 @dataclass(frozen=True, slots=True)
 class EpuckGeometry:
@@ -16,10 +20,15 @@ class EpuckGeometry:
     its own.
     """
 
-    step_m: float = 0.1288e-3
+    step_m: float = STEP_M
     track_m: float = 0.053
     max_steps_per_s: float = 1000.0
     body_radius_m: float = 0.035
+
+    @classmethod
+    def calibrated(cls, wheel_diameter_m: float, wheel_base_m: float) -> EpuckGeometry:
+        """The geometry of one real robot."""
+        return cls(step_m=STEP_M * wheel_diameter_m / NOMINAL_DIAMETER_M, track_m=wheel_base_m)
 
     def wheel_speeds(self, forward_m_per_s: float, turn_rad_per_s: float) -> WheelSpeeds:
         """The wheel speeds of a differential drive for a forward and a counter-clockwise turning speed."""

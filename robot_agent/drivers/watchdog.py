@@ -51,6 +51,7 @@ class Watchdog:
         self._reopen_ns = 0
         self._lost_ns: int | None = None
         self._identity = ""
+        self._stands = False
         self.failures = 0
         """Exchanges without a good answer."""
         self.refused = 0
@@ -70,6 +71,7 @@ class Watchdog:
     def obey(self, request: Request) -> Answer:
         """Take a command over unless it is stale, speak with the robot, and answer the agent."""
         stands = not (request.left or request.right)
+        self._stands = False
         if request.drives and (stands or request.deadline_ns > self._now_ns()):
             self._wanted = Actuators(request.left, request.right, request.lights)
             self._deadline_ns = request.deadline_ns
@@ -78,9 +80,9 @@ class Watchdog:
         return Answer.of(request.number, self._now_ns(), self.act(), self.failures, self.refused)
 
     def stand(self) -> bool:
-        """Tell the robot to stand whatever its deadline; whether it said that it heard."""
+        """See to it that the robot stands; whether it has said that it does."""
         self._deadline_ns = 0
-        return self.act() is not None
+        return self._stands or self.act() is not None
 
     def act(self) -> Reading | None:
         """One exchange with the robot; None if it gave no good answer."""
@@ -90,6 +92,7 @@ class Watchdog:
             self._wanted = Actuators(lights=self._wanted.lights)
         reading = self._exchanged(now_ns)
         heard = reading is not None
+        self._stands = heard and not self._moving
         self._due_ns = self._now_ns() + (IDLE_EXCHANGE_NS if heard or self._moving else REPEAT_STOP_NS)
         return reading
 

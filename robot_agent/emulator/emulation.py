@@ -17,7 +17,7 @@ from robot_agent.emulator.esp32 import SENSORS_EVERY_NS, Esp32
 from robot_agent.emulator.faults import Faults
 from robot_agent.emulator.i2c_slaves import GumstixSlave, I2cSlave, YorkSlave
 from robot_agent.emulator.lpuck import LpuckSlave
-from robot_agent.emulator.ports import BusPort, Port, SerialPort, WifiPort
+from robot_agent.emulator.ports import EMULATED, LOOPBACK, BusPort, Port, SerialPort, WifiPort
 from robot_agent.emulator.robot import EmulatedRobot
 from swarm.geometry import Compartment, Pose
 
@@ -42,14 +42,20 @@ class RobotToEmulate:
     wifi_cycle_ns: int = SENSORS_EVERY_NS
 
 
+def default_address(link: str, place: Path, name: str) -> str:
+    """An address in a folder; a free port of this machine for Wi-Fi."""
+    if link == "wifi":
+        return f"{LOOPBACK}:0"
+    return f"{EMULATED if link in ('i2c', 'spi') else ''}{place / name}.{link}"
+
+
 class Emulation:
     """One robot and its port; a context manager that serves for as long as the block runs."""
 
     def __init__(
         self,
         wanted: RobotToEmulate,
-        place: Path,
-        name: str,
+        address: str,
         now_ns: Callable[[], int],
         rng: np.random.Generator,
     ) -> None:
@@ -57,9 +63,10 @@ class Emulation:
         geometry = EpuckGeometry(max_steps_per_s=FASTEST_STEPS_PER_S)
         body = SimulatedBody(geometry, wanted.body, wanted.pose, wanted.walls, body_rng)
         self.robot = EmulatedRobot(body, _motors(wanted), wanted.walls, wanted.faults, SELECTORS[wanted.link])
+        self.now_ns = now_ns
         self.lock = threading.Lock()
         """Held by whoever touches the robot while it is served."""
-        self.port = _port(wanted, self.robot, place / name, now_ns, self.lock, link_rng)
+        self.port = _port(wanted, self.robot, address, now_ns, self.lock, link_rng)
 
     @property
     def address(self) -> str:
@@ -83,26 +90,26 @@ def _motors(wanted: RobotToEmulate) -> StepperMotors:
 def _port(
     wanted: RobotToEmulate,
     robot: EmulatedRobot,
-    at: Path,
+    address: str,
     now_ns: Callable[[], int],
     lock: threading.Lock,
     rng: np.random.Generator,
 ) -> Port:
-    """The port of a link; where it is in the file system, if it is."""
-    faults = wanted.faults
+    """The port of a link at an address such as a driver is given."""
+    faults, at = wanted.faults, Path(address.removeprefix(EMULATED))
     if wanted.link == "serial":
         firmware = Asercom(robot, wanted.model, rng)
-        return SerialPort(firmware, at.with_suffix(".tty"), now_ns, lock, faults)
+        return SerialPort(firmware, at, now_ns, lock, faults)
     if wanted.link == "wifi":
-        return WifiPort(Esp32(robot, rng, wanted.wifi_cycle_ns), 0, now_ns, lock, faults)
+        return WifiPort(
+            Esp32(robot, rng, wanted.wifi_cycle_ns), int(address.rpartition(":")[2]), now_ns, lock, faults
+        )
     if wanted.link == "spi":
         lpuck = LpuckSlave(robot, rng)
-        return BusPort(
-            None, lambda sent: lpuck.transfer(sent, now_ns()), at.with_suffix(".spi"), now_ns, lock, faults
-        )
+        return BusPort(None, lambda sent: lpuck.transfer(sent, now_ns()), at, now_ns, lock, faults)
     slave: I2cSlave = GumstixSlave(robot, rng) if wanted.model == "epuck2" else YorkSlave(robot, rng)
 
     def i2c(address: int, written: bytes, count: int) -> bytes:
         return slave.transfer(address, written, count, now_ns())
 
-    return BusPort(i2c, None, at.with_suffix(".i2c"), now_ns, lock, faults)
+    return BusPort(i2c, None, at, now_ns, lock, faults)

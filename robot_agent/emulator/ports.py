@@ -21,6 +21,8 @@ from swarm.clock import NS_PER_S
 POLL_S = 0.002
 """Real time between two looks at the clock: a tenth of the Wi-Fi firmware's cycle."""
 LOOPBACK = "127.0.0.1"
+EMULATED = "unix:"
+"""What the address of an emulated bus begins with."""
 
 Now = Callable[[], int]
 
@@ -202,7 +204,7 @@ class BusPort(Port):
 
     @property
     def address(self) -> str:
-        return f"unix:{self._at}"
+        return f"{EMULATED}{self._at}"
 
     def _open(self) -> None:
         self._at.unlink(missing_ok=True)
