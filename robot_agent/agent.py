@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from robot_agent.brain import Brain, Transition
 from robot_agent.checkpoint import Checkpoint
 from robot_agent.drivers.body import Body, WheelSpeeds
+from robot_agent.drivers.health import TellsHealth
 from robot_agent.inbox import AgentInbox
 from robot_agent.motion import Motion
 from robot_agent.pose import PoseEstimator
@@ -88,6 +89,7 @@ class Agent:
         """The cell that the robot stands in or is leaving."""
         self.brain = brain
         self.body = body
+        self._tells_health = body if isinstance(body, TellsHealth) else None
         self._compartment = compartment
         self._estimator = estimator
         self._motion = motion
@@ -164,7 +166,9 @@ class Agent:
     def report(self, seen: Seen, sent: WheelSpeeds) -> None:
         """The command as sent at every tick, the status once a second."""
         self._reporter.command(sent, seen.pose)
-        self._reporter.status(seen.t_ns, self.activity.value, self.brain, seen.pose_age_s, self._inbox.bad)
+        health = self._tells_health.health if self._tells_health else None
+        activity = self.activity.value
+        self._reporter.status(seen.t_ns, activity, self.brain, seen.pose_age_s, self._inbox.bad, health)
 
     def resume_from(self, checkpoint: Checkpoint) -> None:
         """Keep the checkpoint up to date after every move, and go on from it if it has something."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from robot_agent.brain import Brain, Publish
 from robot_agent.drivers.body import WheelSpeeds
+from robot_agent.drivers.health import BodyHealth
 from swarm import keys
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
@@ -34,21 +35,34 @@ class Reporter:
             ),
         )
 
-    def status(self, t_ns: int, activity: str, brain: Brain, pose_age_s: float, bad: int) -> None:
-        """Once a second; a pose that never came counts as 100,000 s old."""
+    def status(
+        self,
+        t_ns: int,
+        activity: str,
+        brain: Brain,
+        pose_age_s: float,
+        bad: int,
+        health: BodyHealth | None = None,
+    ) -> None:
+        """Once a second; a pose that never came counts as 100,000 s old. Real robots tell how they do."""
         if t_ns < self._status_due_ns:
             return
         self._status_due_ns = t_ns + STATUS_PERIOD_NS
-        self._publish(
-            keys.STATUS,
-            pb.Status(
-                activity=activity,
-                moves=brain.moves,
-                tracks=brain.tracks,
-                pose_age_s=min(pose_age_s, LONGEST_AGE_S),
-                bad_messages=bad,
-            ),
+        status = pb.Status(
+            activity=activity,
+            moves=brain.moves,
+            tracks=brain.tracks,
+            pose_age_s=min(pose_age_s, LONGEST_AGE_S),
+            bad_messages=bad,
         )
+        if health:
+            status.battery_v = health.battery_v
+            status.proximity.extend(health.proximity)
+            status.reading_age_s = min(health.reading_age_s, LONGEST_AGE_S)
+            status.failed_exchanges = health.failed_exchanges
+            status.refused_readings = health.refused_readings
+            status.refused_commands = health.refused_commands
+        self._publish(keys.STATUS, status)
 
     def event(self, name: str, text: str, level: pb.Event.Level.ValueType = pb.Event.WARNING) -> None:
         """Something that a person should be able to read in the log."""

@@ -247,8 +247,8 @@ class TrueSteps:
 
 
 def assert_possible(error: tuple[int, int], silent_ns: int) -> None:
-    """The counts are off by no more than wheels can have turned since the robot was last understood, one way in
-    truth and the other way in a wrong reading; two readings go into one look, each with its slack."""
+    """The counts are off by no more than wheels can have turned since the robot was last understood, one way
+    in truth and the other way in a wrong reading; two readings go into one look, each with its slack."""
     assert max(map(abs, error)) <= 2 * (SLACK_STEPS + FASTEST_STEPS_PER_S * silent_ns * 1e-9)
 
 

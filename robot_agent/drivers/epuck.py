@@ -28,7 +28,7 @@ class EpuckGeometry:
     @classmethod
     def calibrated(cls, wheel_diameter_m: float, wheel_base_m: float) -> EpuckGeometry:
         """The geometry of one real robot."""
-        return cls(step_m=STEP_M * wheel_diameter_m / NOMINAL_DIAMETER_M, track_m=wheel_base_m)
+        return cls(step_m=STEP_M * (wheel_diameter_m / NOMINAL_DIAMETER_M), track_m=wheel_base_m)
 
     def wheel_speeds(self, forward_m_per_s: float, turn_rad_per_s: float) -> WheelSpeeds:
         """The wheel speeds of a differential drive for a forward and a counter-clockwise turning speed."""
