@@ -14,6 +14,7 @@ from swarm.clock import WallClock
 from swarm.experiment import Experiment
 from swarm.keys import Delivery, Topic
 from swarm.link import Sequencer
+from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header, Item
 from swarm.presence import present
 
@@ -43,6 +44,7 @@ class LiveHub:
         self._inboxes = [bus.inbox(key, Delivery.EVERY) for key in EVERYTHING]
         self._senders: dict[str, Sender] = {}
         self._sequencer = Sequencer()
+        self._ended = False
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
 
@@ -64,13 +66,16 @@ class LiveHub:
         if key not in self._senders:
             self._senders[key] = self._bus.sender(key, topic.delivery)
         self._senders[key].put(message.SerializeToString(), attachment=header.pack())
+        if isinstance(message, pb.RunState) and message.phase == pb.RunState.ENDED:
+            self._ended = True
 
     def advance(self) -> None:
         """In real time the processes need no leave."""
 
     def gather(self) -> Batch:
         t_ns = next(self._ticks)
-        self._check()
+        if not self._ended:
+            self._check()
         return Batch(t_ns, [item for inbox in self._inboxes for item in self._items(inbox.poll())])
 
     def unsent(self) -> Batch:
