@@ -4,25 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from swarm import keys
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
-from swarm.link import Link
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
+from swarm.runtime.node import Node
 
 CONDUCTOR_SILENT_S = 5.0
 
 
 class AgentInbox:
-    """The three feeds of one robot.
+    """The three subscriptions of one robot.
 
     A robot goes on only while it hears the run's state: after 5 s without it finishes its move and waits.
     """
 
-    def __init__(self, link: Link, robot: str) -> None:
-        self._poses = link.subscribe(keys.POSE, robot)
-        self._orders = link.subscribe(keys.ORDER, robot)
-        self._run_states = link.subscribe(keys.RUN_STATE)
+    def __init__(self, node: Node, robot: str) -> None:
+        self._poses = node.subscribe(topics.POSE, robot)
+        self._orders = node.subscribe(topics.ORDER, robot)
+        self._run_states = node.subscribe(topics.RUN_STATE)
         self._phase = pb.RunState.PHASE_UNSPECIFIED
         self._heard_ns = 0
         self._order = pb.Order(kind=pb.Order.RUN)

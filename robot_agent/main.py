@@ -11,10 +11,15 @@ from robot_agent.addresses import add_address_argument, addresses
 from robot_agent.agent import Agent
 from robot_agent.assembly import Assembly, Place
 from robot_agent.checkpoint import Checkpoint
-from swarm.errors import UserError, nearest
-from swarm.experiment import Experiment
-from swarm.guard import guarded
-from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals, load_experiment
+from swarm.config.experiment import Experiment
+from swarm.errors import UserError, guarded, nearest
+from swarm.runtime.process import (
+    OneLineParser,
+    add_common_arguments,
+    joined,
+    leave_on_signals,
+    load_experiment,
+)
 
 
 def main() -> None:
@@ -25,7 +30,7 @@ def main() -> None:
 def _called(words: list[str]) -> None:
     """A tool if the first word names one, and else a robot."""
     if words[:1] == ["calibrate"]:
-        from robot_agent.calibrating import calibrate, calibrate_parser
+        from robot_agent.commands.calibrate import calibrate, calibrate_parser
 
         calibrate(calibrate_parser().parse_args(words[1:]))
     elif words[:1] == ["emulate"]:
@@ -37,7 +42,7 @@ def _called(words: list[str]) -> None:
 
         emulate_robots(emulate_robots_parser().parse_args(words[1:]))
     elif words[:1] == ["collect-copies"]:
-        from robot_agent.collecting import collect, collect_parser
+        from robot_agent.commands.collect_copies import collect, collect_parser
 
         collect(collect_parser().parse_args(words[1:]))
     else:
@@ -49,20 +54,20 @@ def run(arguments: argparse.Namespace) -> None:
     experiment = load_experiment(arguments)
     names = _names(arguments.robot, experiment)
     leave_on_signals()
-    with joined(arguments, "robot", names, experiment.simulation.tick_s) as link:
+    with joined(arguments, "robot", names, experiment.simulation.tick_s) as node:
         place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
-        assembly = Assembly(experiment, link, arguments.trial, place)
+        assembly = Assembly(experiment, node, arguments.trial, place)
         agents = [assembly.agent(name) for name in names]
         if arguments.state:
             run = f"{experiment.run.name}, seed {experiment.run.seed}, trial {arguments.trial}"
             for agent, name in zip(agents, names, strict=True):
                 agent.resume_from(Checkpoint(arguments.state, name, run))
         try:
-            link.run(partial(_step, agents))
+            node.run(partial(_step, agents))
         finally:
             _stop(agents)
             if arguments.keys:
-                _write_keys(arguments.keys, link.keys_received)
+                _write_keys(arguments.keys, node.keys_received)
 
 
 def _step(agents: list[Agent], t_ns: int) -> None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from robot_agent.brain import Brain, Publish
-from robot_agent.drivers.body import WheelSpeeds
 from robot_agent.drivers.health import BodyHealth
-from swarm import keys
+from robot_agent.drivers.kinematics import WheelSpeeds
+from robot_agent.policies.policy import Policy, Publish
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
 
 STATUS_PERIOD_NS = NS_PER_S
 LONGEST_AGE_S = 1e5
@@ -25,7 +25,7 @@ class Reporter:
         """Wheel speeds as sent, and the pose that the robot believes (0, 0, 0 before the first fix)."""
         believed = pose or Pose(0.0, 0.0, 0.0)
         self._publish(
-            keys.COMMAND,
+            topics.COMMAND,
             pb.Command(
                 left_steps_per_s=sent.left_steps_per_s,
                 right_steps_per_s=sent.right_steps_per_s,
@@ -39,7 +39,7 @@ class Reporter:
         self,
         t_ns: int,
         activity: str,
-        brain: Brain,
+        policy: Policy,
         pose_age_s: float,
         bad: int,
         health: BodyHealth | None = None,
@@ -50,8 +50,8 @@ class Reporter:
         self._status_due_ns = t_ns + STATUS_PERIOD_NS
         status = pb.Status(
             activity=activity,
-            moves=brain.moves,
-            tracks=brain.tracks,
+            moves=policy.moves,
+            tracks=policy.tracks,
             pose_age_s=min(pose_age_s, LONGEST_AGE_S),
             bad_messages=bad,
         )
@@ -62,8 +62,8 @@ class Reporter:
             status.failed_exchanges = health.failed_exchanges
             status.refused_readings = health.refused_readings
             status.refused_commands = health.refused_commands
-        self._publish(keys.STATUS, status)
+        self._publish(topics.STATUS, status)
 
     def event(self, name: str, text: str, level: pb.Event.Level.ValueType = pb.Event.WARNING) -> None:
         """Something that a person should be able to read in the log."""
-        self._publish(keys.EVENT, pb.Event(level=level, name=name, text=text))
+        self._publish(topics.EVENT, pb.Event(level=level, name=name, text=text))

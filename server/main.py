@@ -11,16 +11,15 @@ from pathlib import Path
 
 from rich.console import Console
 
-from server.progress import RunProgress
+from server.processes.environment import laboratory, simulated
+from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
-from server.stage import laboratory, simulated
-from server.summary import print_summary
-from swarm.bus import Bus, BusSettings
 from swarm.cli.output import print_json
-from swarm.experiment import Experiment
-from swarm.guard import guarded
-from swarm.process import OneLineParser, leave_on_signals
+from swarm.config.experiment import Experiment
+from swarm.errors import guarded
+from swarm.runtime.process import OneLineParser, leave_on_signals
+from swarm.runtime.zenoh_session import Session, SessionSettings
 
 
 def main() -> None:
@@ -33,12 +32,12 @@ def run(arguments: argparse.Namespace) -> None:
     leave_on_signals()
     experiment = Experiment.load(arguments.experiment)
     experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
-    with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_bus:
+    with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
         trials: Sequence[int] = range(experiment.run.trials)
         if arguments.listen:
-            settings = BusSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
-            bus = open_bus.enter_context(Bus(settings))
-            trials, set_stage = [arguments.trial], laboratory(experiment, bus, progress.warn)
+            settings = SessionSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
+            session = open_session.enter_context(Session(settings))
+            trials, set_stage = [arguments.trial], laboratory(experiment, session, progress.warn)
         else:
             set_stage = simulated(experiment, arguments.speed, progress.warn, emulate=arguments.emulate)
         directory = RunDirectory.create(arguments.out, experiment.run.name)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from swarm import keys
 from swarm.clock import NS_PER_S
-from swarm.link import Link
 from swarm.messages import swarm_pb2 as pb
-from tracker_bridge.backends.backend import Backend, TrackedPose
-from tracker_bridge.gate import Gate
+from swarm.messages import topics
+from swarm.runtime.node import Node
+from tracker_bridge.backends.interface import Backend, TrackedPose
+from tracker_bridge.plausibility import Plausibility
 
 LOST_AFTER_NS = 2 * NS_PER_S
 
@@ -15,10 +15,10 @@ LOST_AFTER_NS = 2 * NS_PER_S
 class Bridge:
     """Between a tracking system and the swarm. Poses of robots that the experiment does not name are left."""
 
-    def __init__(self, backend: Backend, gate: Gate, link: Link, robots: list[str]) -> None:
+    def __init__(self, backend: Backend, plausibility: Plausibility, node: Node, robots: list[str]) -> None:
         self._backend = backend
-        self._gate = gate
-        self._link = link
+        self._plausibility = plausibility
+        self._node = node
         self._seen_ns: dict[str, int | None] = dict.fromkeys(robots)
         self._refused: dict[str, str] = {}
 
@@ -33,7 +33,7 @@ class Bridge:
                 self._report("lost", f"{robot}: no believable pose for {LOST_AFTER_NS // NS_PER_S} s")
 
     def _pass_on(self, tracked: TrackedPose) -> None:
-        reason = self._gate.reason_against(tracked)
+        reason = self._plausibility.reason_against(tracked)
         kind = reason.split(" ")[0] if reason else ""
         if reason and self._refused.get(tracked.robot) != kind:
             self._report("refused", f"{tracked.robot}: {reason}")
@@ -45,7 +45,7 @@ class Bridge:
         message = pb.Pose(
             x_m=pose.x_m, y_m=pose.y_m, theta_rad=pose.theta_rad, captured_t_ns=tracked.captured_t_ns
         )
-        self._link.publish(keys.POSE, message, tracked.robot)
+        self._node.publish(topics.POSE, message, tracked.robot)
 
     def _report(self, name: str, text: str) -> None:
-        self._link.publish(keys.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))
+        self._node.publish(topics.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from robot_agent.drivers.body import STOPPED, WheelSpeeds, WheelSteps
 from robot_agent.drivers.deadline import COMMAND_HOLDS_S
-from robot_agent.drivers.epuck import EpuckGeometry
 from robot_agent.drivers.health import BodyHealth
+from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry, WheelSpeeds, WheelSteps
 from robot_agent.drivers.motors import EPUCK1
 from robot_agent.drivers.robot_link import Reading
 from robot_agent.drivers.step_gate import StepGate

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
 
-from robot_agent.drivers.camera import Camera
-from robot_agent.drivers.camera_model import CameraModel
-from robot_agent.drivers.driver import DriverParts
 from robot_agent.drivers.epuck_body import EpuckBody
+from robot_agent.drivers.interfaces import Camera, DriverParts
 from robot_agent.drivers.watchdog_process import WatchdogProcess
-from swarm import keys
+from robot_agent.vision.camera_model import CameraModel
 from swarm.errors import UserError
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
 
 
 @dataclass(frozen=True)
@@ -83,7 +82,7 @@ class EpuckDriver:
         """An event for the log; what the robot says of itself is no warning."""
         level = pb.Event.INFO if name == "robot" else pb.Event.WARNING
         event = pb.Event(level=level, name=name, text=text)
-        self._parts.link.publish(keys.EVENT, event, self._parts.robot.id)
+        self._parts.node.publish(topics.EVENT, event, self._parts.robot.id)
 
 
 serial = partial(EpuckDriver, "serial")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from robot_agent.drivers.body import WheelSpeeds
+from robot_agent.drivers.kinematics import WheelSpeeds
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import NamedTuple
 
-from robot_agent.drivers.body import WheelSteps
+from robot_agent.drivers.kinematics import WheelSteps
 from robot_agent.drivers.robot_link import wrapped_difference
 
 FASTEST_STEPS_PER_S = 1250.0

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from robot_agent.drivers.epuck import EpuckGeometry
+from robot_agent.drivers.kinematics import EpuckGeometry
 from robot_agent.drivers.motors import EPUCK1, EPUCK2, YORK, StepperMotors
-from robot_agent.drivers.sim import BodyFaults, SimulatedBody
+from robot_agent.drivers.sim.body import BodyFaults, SimulatedBody
 from robot_agent.emulator.asercom import Asercom
 from robot_agent.emulator.esp32 import SENSORS_EVERY_NS, Esp32
 from robot_agent.emulator.faults import Faults

@@ -8,16 +8,22 @@ from functools import partial
 
 from robot_agent.addresses import add_address_argument, addresses
 from robot_agent.drivers.epuck_driver import now_at
-from robot_agent.drivers.sim import BodyFaults
+from robot_agent.drivers.sim.body import BodyFaults
 from robot_agent.emulator.emulation import Emulation, RobotToEmulate
 from robot_agent.emulator.faults import Faults
-from swarm import keys
-from swarm.experiment import Experiment
+from swarm.config.experiment import Experiment
 from swarm.geometry import Pose
 from swarm.learning.random import spawned_generator
-from swarm.link import Link
 from swarm.messages import swarm_pb2 as pb
-from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals, load_experiment
+from swarm.messages import topics
+from swarm.runtime.node import Node
+from swarm.runtime.process import (
+    OneLineParser,
+    add_common_arguments,
+    joined,
+    leave_on_signals,
+    load_experiment,
+)
 
 
 def emulate_robots(arguments: argparse.Namespace) -> None:
@@ -27,16 +33,16 @@ def emulate_robots(arguments: argparse.Namespace) -> None:
     places = addresses(arguments.address)
     faults = Faults.parse(arguments.fault)
     with (
-        joined(arguments, "emulator", ["robots"], experiment.simulation.tick_s) as link,
+        joined(arguments, "emulator", ["robots"], experiment.simulation.tick_s) as node,
         ExitStack() as served,
     ):
         robots = [
             EmulatedInRun(
-                served.enter_context(emulation_of(experiment, robot, address, faults, arguments)), link, robot
+                served.enter_context(emulation_of(experiment, robot, address, faults, arguments)), node, robot
             )
             for robot, address in places.items()
         ]
-        link.run(partial(_step, robots))
+        node.run(partial(_step, robots))
 
 
 def emulation_of(
@@ -59,11 +65,11 @@ def emulation_of(
 class EmulatedInRun:
     """One emulated robot that publishes its truth at every tick and can be carried, as a simulated one."""
 
-    def __init__(self, emulation: Emulation, link: Link, name: str) -> None:
+    def __init__(self, emulation: Emulation, node: Node, name: str) -> None:
         self._emulation = emulation
-        self._link = link
+        self._node = node
         self._name = name
-        self._carries = link.subscribe(keys.CARRY, name)
+        self._carries = node.subscribe(topics.CARRY, name)
 
     def step(self) -> None:
         emulation = self._emulation
@@ -74,7 +80,7 @@ class EmulatedInRun:
                 emulation.robot.place(Pose(to.x_m, to.y_m, to.theta_rad))
             contacts = emulation.robot.wall_contacts
         message = pb.Truth(x_m=truth.x_m, y_m=truth.y_m, theta_rad=truth.theta_rad, wall_contacts=contacts)
-        self._link.publish(keys.TRUTH, message, self._name)
+        self._node.publish(topics.TRUTH, message, self._name)
 
 
 def _step(robots: list[EmulatedInRun], t_ns: int) -> None:  # noqa: ARG001

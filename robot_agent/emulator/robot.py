@@ -7,9 +7,9 @@ from collections import deque
 
 import numpy as np
 
-from robot_agent.drivers.body import STOPPED, WheelSpeeds
+from robot_agent.drivers.kinematics import STOPPED, WheelSpeeds
 from robot_agent.drivers.motors import StepperMotors
-from robot_agent.drivers.sim import SimulatedBody
+from robot_agent.drivers.sim.body import SimulatedBody
 from robot_agent.emulator.faults import Faults
 from swarm.clock import NS_PER_S
 from swarm.geometry import Compartment, Pose
