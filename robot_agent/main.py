@@ -33,6 +33,10 @@ def _called(words: list[str]) -> None:
         from robot_agent.commands.calibrate import calibrate, calibrate_parser
 
         calibrate(calibrate_parser().parse_args(words[1:]))
+    elif words[:1] == ["check"]:
+        from robot_agent.commands.check import check, check_parser
+
+        check(check_parser().parse_args(words[1:]))
     elif words[:1] == ["emulate"]:
         from robot_agent.emulator.command import emulate, emulate_parser
 

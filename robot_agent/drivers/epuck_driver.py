@@ -45,8 +45,15 @@ def require_package(link: str, address: str) -> None:
     """UserError that names the extra, if the link's package is not installed. An emulated SPI device needs
     none."""
     package = KINDS[link].package
-    if package and find_spec(package) is None and not (link == "spi" and address.startswith("unix:")):
+    if package and not _is_installed(package) and not (link == "spi" and address.startswith("unix:")):
         raise UserError(f"driver {link!r} needs {package}: pip install 'swarm-runtime[{link}]'")
+
+
+def _is_installed(package: str) -> bool:
+    try:
+        return find_spec(package) is not None
+    except ModuleNotFoundError:
+        return False
 
 
 def now_at(speed: float) -> Callable[[], int]:
