@@ -11,7 +11,8 @@ from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry, WheelSpeeds, 
 from robot_agent.drivers.motors import EPUCK1
 from robot_agent.drivers.robot_link import Reading
 from robot_agent.drivers.step_gate import StepGate
-from robot_agent.drivers.watchdog_messages import Answer, Event, Identity, Request, unpacked
+from robot_agent.drivers.watchdog_messages import Answer, Event, Identity, Picture, Request, Said, unpacked
+from robot_agent.vision.frames import Frame
 from swarm.errors import UserError
 
 ANSWER_WITHIN_S = 0.05
@@ -75,6 +76,7 @@ class EpuckBody:
         self._last_event = "nothing was heard of it"
         self._answer: Answer | None = None
         self._reading: Reading | None = None
+        self._picture: Picture | None = None
         self._reading_ns = 0
         self._closed = False
         self._stood_at: WheelSteps | None = None
@@ -131,11 +133,23 @@ class EpuckBody:
             self.drive(STOPPED, 0)
             self._channel.close()
 
-    def _send(self, *, drives: bool) -> None:
+    def take_picture(self) -> Frame | None:
+        """A new image of the camera on the link, and ask for the next; only while the robot stands."""
+        if not any(self._commands):
+            self._send(drives=False, image=True)
+        picture, self._picture = self._picture, None
+        if picture is None:
+            return None
+        t_ns = round(picture.t_ns / self._speed)
+        return Frame(t_ns, picture.width, picture.height, "rgb565", picture.data)
+
+    def _send(self, *, drives: bool, image: bool = False) -> None:
         self._number += 1
         deadline_ns = self._observed_ns + round(COMMAND_HOLDS_S * 1e9)
         left, right = self._commands
-        self._channel.send(Request(self._number, drives, left, right, self._lights, deadline_ns).pack())
+        self._channel.send(
+            Request(self._number, drives, left, right, self._lights, deadline_ns, image).pack()
+        )
 
     def _ask(self) -> None:
         """Take in what the watchdog says, up to its answer to this question."""
@@ -151,8 +165,10 @@ class EpuckBody:
             self._say("watchdog", "the watchdog has ended; a new one stops the robot and goes on")
             self._channel.restart()
 
-    def _take_in(self, heard: Answer | Identity | Event) -> None:
-        if isinstance(heard, Event):
+    def _take_in(self, heard: Said) -> None:
+        if isinstance(heard, Picture):
+            self._picture = heard
+        elif isinstance(heard, Event):
             self._last_event = heard.text
             if self._identity:
                 self._say("link", heard.text)

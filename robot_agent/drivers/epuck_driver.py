@@ -26,11 +26,18 @@ class LinkKind:
     package: str = ""
     needs_address: str = ""
     """An example of the address, if there is none that can be guessed."""
+    has_camera: bool = False
+    """Whether images come over the link."""
 
 
 KINDS = {
-    "serial": LinkKind("robot_agent.drivers.serial:open_link", "serial", "/dev/ttyACM0 or 10:00:E8:AD:12:34"),
-    "wifi": LinkKind("robot_agent.drivers.wifi:open_link", "", "192.168.1.20"),
+    "serial": LinkKind(
+        "robot_agent.drivers.serial:open_link",
+        package="serial",
+        needs_address="/dev/ttyACM0 or 10:00:E8:AD:12:34",
+        has_camera=True,
+    ),
+    "wifi": LinkKind("robot_agent.drivers.wifi:open_link", needs_address="192.168.1.20", has_camera=True),
     "i2c": LinkKind("robot_agent.drivers.i2c:open_link", "smbus2"),
     "spi": LinkKind("robot_agent.drivers.spi:open_link", "spidev"),
 }
@@ -66,6 +73,7 @@ class EpuckDriver:
 
     def __init__(self, link: str, parts: DriverParts) -> None:
         robot, kind = parts.robot, KINDS[link]
+        self._has_camera = kind.has_camera
         if parts.lockstep:
             raise UserError(
                 f"robot {robot.id!r}: driver {link!r} keeps its own time; use --emulate and --speed X"
@@ -82,8 +90,12 @@ class EpuckDriver:
             self.body.close()
             raise UserError(f"robot {robot.id!r}, {link} {parts.address}: {error}") from error
 
-    def camera(self, model: CameraModel) -> Camera:  # noqa: ARG002
-        raise UserError(f"robot {self._parts.robot.id!r}: this link has no camera")
+    def camera(self, model: CameraModel) -> Camera:
+        """The camera that the settings name; what it takes is loaded here and not before."""
+        from robot_agent.drivers.cameras.choice import camera_named
+
+        on_link = self.body.take_picture if self._has_camera else None
+        return camera_named(self._parts.robot.camera, on_link, model, self._parts.speed, self._say)
 
     def _say(self, name: str, text: str) -> None:
         """An event for the log; what the robot says of itself is no warning."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from robot_agent.drivers.motors import StepperMotors
 
@@ -46,6 +46,17 @@ class Reading:
         if not 0 <= self.battery_v <= 5.5:
             raise ReplyError(f"a battery of {self.battery_v:.1f} V")
         return self
+
+
+@runtime_checkable
+class HasCamera(Protocol):
+    """A link over which the robot also sends images."""
+
+    def picture(self) -> tuple[int, int, bytes] | None:
+        """Width, height and RGB565 pixels (high byte first) of a new image; None if there is none.
+
+        It may take as long as an image takes on the line: only a robot that stands is asked.
+        """
 
 
 class RobotLink(Protocol):

@@ -18,8 +18,8 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 
-from robot_agent.drivers.robot_link import Actuators, LinkError, Reading, ReplyError, RobotLink
-from robot_agent.drivers.watchdog_messages import Answer, Event, Identity, Request
+from robot_agent.drivers.robot_link import Actuators, HasCamera, LinkError, Reading, ReplyError, RobotLink
+from robot_agent.drivers.watchdog_messages import Answer, Event, Identity, Picture, Request
 
 NS_PER_S = 1_000_000_000
 IDLE_EXCHANGE_NS = NS_PER_S // 10
@@ -77,7 +77,17 @@ class Watchdog:
             self._deadline_ns = request.deadline_ns
         elif request.drives:
             self.refused += 1
+        if request.image and not self._moving:
+            self._report_picture()
         return Answer.of(request.number, self._now_ns(), self.act(), self.failures, self.refused)
+
+    def _report_picture(self) -> None:
+        if isinstance(self._link, HasCamera):
+            with suppress(ReplyError, LinkError, OSError):
+                began_ns = self._now_ns()
+                if picture := self._link.picture():
+                    width, height, data = picture
+                    self._report(Picture(began_ns, width, height, data).pack())
 
     def stand(self) -> bool:
         """See to it that the robot stands; whether it has said that it does."""

@@ -10,7 +10,9 @@ from robot_agent.drivers.motors import StepperMotors
 from robot_agent.drivers.robot_link import Reading
 
 LONGEST = 1024
-"""No datagram is longer: texts are cut."""
+"""Longer texts are cut."""
+LONGEST_DATAGRAM = 65_536
+"""An image has 38,400 bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,13 +25,21 @@ class Request:
     right: int = 0
     lights: int = 0
     deadline_ns: int = 0
+    image: bool = False
+    """Whether the camera on the link is to send a picture as well."""
 
-    _LAYOUT: ClassVar[struct.Struct] = struct.Struct("<I?hhHq")
-    SIZE: ClassVar[int] = 19
+    _LAYOUT: ClassVar[struct.Struct] = struct.Struct("<I?hhHq?")
+    SIZE: ClassVar[int] = 20
 
     def pack(self) -> bytes:
         return self._LAYOUT.pack(
-            self.number, self.drives, self.left, self.right, self.lights, self.deadline_ns
+            self.number,
+            self.drives,
+            self.left,
+            self.right,
+            self.lights,
+            self.deadline_ns,
+            self.image,
         )
 
     @classmethod
@@ -115,9 +125,31 @@ class Event:
         return cls(data[1:].decode(errors="replace"))
 
 
-def unpacked(data: bytes) -> Answer | Identity | Event:
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """An image of the camera on the link: RGB565, the high byte first."""
+
+    t_ns: int
+    width: int
+    height: int
+    data: bytes
+
+    KIND: ClassVar[bytes] = b"P"
+    _LAYOUT: ClassVar[struct.Struct] = struct.Struct("<cqHH")
+
+    def pack(self) -> bytes:
+        return self._LAYOUT.pack(self.KIND, self.t_ns, self.width, self.height) + self.data
+
+    @classmethod
+    def unpack(cls, data: bytes) -> Picture:
+        _, t_ns, width, height = cls._LAYOUT.unpack_from(data)
+        return cls(t_ns, width, height, data[cls._LAYOUT.size :])
+
+
+Said = Answer | Identity | Event | Picture
+
+
+def unpacked(data: bytes) -> Said:
     """What the watchdog said."""
-    kinds: dict[bytes, type[Answer | Identity | Event]] = {
-        kind.KIND: kind for kind in (Answer, Identity, Event)
-    }
+    kinds: dict[bytes, type[Said]] = {kind.KIND: kind for kind in (Answer, Identity, Event, Picture)}
     return kinds[data[:1]].unpack(data)

@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 from robot_agent.drivers.epuck_body import WatchdogEndedError
-from robot_agent.drivers.watchdog_messages import LONGEST
+from robot_agent.drivers.watchdog_messages import LONGEST_DATAGRAM
 
 END_WITHIN_S = 2.0
 """A watchdog stops its robot in one exchange; over a lost link it tries for ten seconds, by itself."""
@@ -32,7 +32,7 @@ class WatchdogProcess:
         if not ready:
             return None
         try:
-            message = self._socket.recv(LONGEST + 64)
+            message = self._socket.recv(LONGEST_DATAGRAM)
         except OSError:
             message = b""
         if not message:

@@ -19,7 +19,10 @@ PORT = 1000
 CONNECT_WITHIN_S = 2.0
 REPLY_WITHIN_S = 0.1
 """Sensors come every 20 to 30 ms; the firmware's pauses of 1.5 s are not waited for."""
+REPLY_WITH_IMAGE_WITHIN_S = 0.2
+"""With images a cycle takes 0.14 s."""
 FIRST_REPLY_WITHIN_S = 3.0
+IMAGE_WIDTH, IMAGE_HEIGHT = 160, 120
 IMAGE, SENSORS, EMPTY = 1, 2, 3
 LENGTHS = {IMAGE: 38_400, SENSORS: 104, EMPTY: 0}
 """Bytes after each header byte."""
@@ -102,7 +105,9 @@ class WifiLink:
         self.identity = f"e-puck2 Wi-Fi, selector {selector}"
 
     def exchange(self, actuators: Actuators) -> Reading:
-        return self._exchange(actuators, self._reply_within_s)
+        within_s = REPLY_WITH_IMAGE_WITHIN_S if self._images else self._reply_within_s
+        self._images = self._images and not (actuators.left or actuators.right)
+        return self._exchange(actuators, within_s)
 
     def _exchange(self, actuators: Actuators, within_s: float) -> Reading:
         """What came before the command is old: only its images are of use."""
@@ -114,11 +119,11 @@ class WifiLink:
                 return parsed_sensors(blocks[-1])
         raise ReplyError(f"no sensors within {within_s:g} s")
 
-    def newest_image(self) -> bytes:
-        """The last image, empty if none came since the last call; the robot sends them from then on."""
+    def picture(self) -> tuple[int, int, bytes] | None:
+        """The newest image of the stream, which the robot sends from the first call on."""
         self._images = True
         image, self._stream.image = self._stream.image, b""
-        return image
+        return (IMAGE_WIDTH, IMAGE_HEIGHT, image) if image else None
 
     def close(self) -> None:
         self._line.close()
