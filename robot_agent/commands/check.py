@@ -9,10 +9,8 @@ from collections.abc import Iterator
 from itertools import islice
 
 from robot_agent.commands.preflight import Finding, Verdict, preflight
-from robot_agent.drivers.epuck_body import EpuckBody
-from robot_agent.drivers.epuck_driver import KINDS, now_at, require_package
+from robot_agent.drivers.epuck_driver import KINDS, opened_body
 from robot_agent.drivers.kinematics import EpuckGeometry
-from robot_agent.drivers.watchdog_process import WatchdogProcess
 from swarm.clock import NS_PER_S, unix_clock
 from swarm.errors import RunFailedError, UserError
 from swarm.messages import topics
@@ -46,10 +44,7 @@ def check(arguments: argparse.Namespace) -> None:
 
 
 def _findings(arguments: argparse.Namespace) -> Iterator[Finding]:
-    require_package(arguments.link, arguments.address)
-    events: list[str] = []
-    channel = WatchdogProcess(KINDS[arguments.link].opener, arguments.address, 1.0)
-    body = EpuckBody(channel, EpuckGeometry(), now_at(1.0), 1.0, lambda _, text: events.append(text))
+    body = opened_body(KINDS[arguments.link], arguments.address, EpuckGeometry(), 1.0, _passed_over)
     try:
         try:
             identity = body.wait_for_robot()
@@ -63,6 +58,10 @@ def _findings(arguments: argparse.Namespace) -> Iterator[Finding]:
         body.close()
     if arguments.robot:
         yield from _pose(arguments.robot, arguments.connect)
+
+
+def _passed_over(name: str, text: str) -> None:
+    """Events go into a run's log; here the findings say what matters."""
 
 
 def _pose(robot: str, endpoint: str) -> Iterator[Finding]:

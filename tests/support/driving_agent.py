@@ -10,10 +10,8 @@ import os
 import signal
 import sys
 
-from robot_agent.drivers.epuck_body import EpuckBody
-from robot_agent.drivers.epuck_driver import now_at, opener_of
+from robot_agent.drivers.epuck_driver import KINDS, opened_body
 from robot_agent.drivers.kinematics import EpuckGeometry, WheelSpeeds
-from robot_agent.drivers.watchdog_process import WatchdogProcess
 from swarm.clock import unix_clock
 
 FULL_SPEED = WheelSpeeds(1000.0, 1000.0)
@@ -21,8 +19,7 @@ FULL_SPEED = WheelSpeeds(1000.0, 1000.0)
 
 def main(link: str, address: str, stops_at: int) -> None:
     """Look and drive ten times a second."""
-    channel = WatchdogProcess(opener_of(link), address, 1.0)
-    body = EpuckBody(channel, EpuckGeometry(), now_at(1.0), 1.0, print)
+    body = opened_body(KINDS[link], address, EpuckGeometry(), 1.0, print)
     body.wait_for_robot()
     for tick, t_ns in enumerate(unix_clock().ticks(0.1)):
         body.wheel_steps(t_ns)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from robot_agent.drivers.epuck_body import EpuckBody
-from robot_agent.drivers.epuck_driver import opener_of
+from robot_agent.drivers.epuck_driver import KINDS
 from robot_agent.drivers.kinematics import EpuckGeometry
 from robot_agent.drivers.robot_link import RobotLink
 from robot_agent.drivers.watchdog import Watchdog, link_opener
@@ -85,7 +85,7 @@ class EmulatedRig:
         self.identity = self.body.wait_for_robot()
 
     def _opened(self, link: str) -> RobotLink:
-        return link_opener(opener_of(link))(self.emulation.address)
+        return link_opener(KINDS[link].opener)(self.emulation.address)
 
     def run_to(self, t_ns: int) -> None:
         """Let time pass, and the watchdog do what it has to do by itself."""

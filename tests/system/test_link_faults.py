@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 
 from robot_agent.drivers.epuck_body import EpuckBody
-from robot_agent.drivers.epuck_driver import now_at, opener_of
+from robot_agent.drivers.epuck_driver import KINDS, opened_body
 from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry, WheelSpeeds
 from robot_agent.drivers.robot_link import wrapped_difference
-from robot_agent.drivers.watchdog_process import WatchdogProcess
 from robot_agent.emulator.emulation import Emulation, RobotToEmulate, default_address
 from robot_agent.emulator.faults import Faults
 from swarm.clock import unix_clock
@@ -42,8 +41,9 @@ def drive(link: str, model: str, faults: Faults, seconds: float, place: Path) ->
     events: list[tuple[str, str]] = []
     address = default_address(link, place, "robot")
     with Emulation(wanted, address, time.monotonic_ns, np.random.default_rng(4)) as emulation:
-        channel = WatchdogProcess(opener_of(link), emulation.address, 1.0)
-        body = EpuckBody(channel, EpuckGeometry(), now_at(1.0), 1.0, lambda *event: events.append(event))
+        body = opened_body(
+            KINDS[link], emulation.address, EpuckGeometry(), 1.0, lambda *event: events.append(event)
+        )
         try:
             body.wait_for_robot()
             start = body.wheel_steps(0)
