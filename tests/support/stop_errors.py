@@ -6,14 +6,17 @@ import bisect
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
+from google.protobuf.message import Message
 from mcap.reader import make_reader
 
 from swarm.config.experiment import Experiment
-from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.messages.topics import topic_of
+from swarm.messages.topics import Topic
+
+M = TypeVar("M", bound=Message)
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,8 @@ class StopErrors:
 def stop_errors(log: Path, experiment: Experiment, robot: str) -> StopErrors:
     """The errors of the driven moves, by the truth at the time of each move's end."""
     compartment = experiment.compartment(experiment.robot_named(robot))
-    truths, moves = _records(log, robot)
+    truths = records(log, robot, topics.TRUTH)
+    moves = [(t_ns, move) for t_ns, move in records(log, robot, topics.MOVE) if not move.blocked]
     times = [t_ns for t_ns, _ in truths]
     errors_cm = []
     for t_ns, move in moves:
@@ -46,15 +50,10 @@ def stop_errors(log: Path, experiment: Experiment, robot: str) -> StopErrors:
     )
 
 
-def _records(log: Path, robot: str) -> tuple[list[tuple[int, pb.Truth]], list[tuple[int, pb.Move]]]:
-    """Truths and driven moves of one robot, in order of time."""
-    found: dict[str, list[tuple[int, pb.Truth | pb.Move]]] = {"truth": [], "move": []}
+def records(log: Path, robot: str, topic: Topic[M]) -> list[tuple[int, M]]:
+    """One robot's messages of a topic with the times at which they were sent, in order of time."""
+    found = []
     with log.open("rb") as file:
-        for _, channel, message in make_reader(file).iter_messages():
-            topic = topic_of(channel.topic)
-            if topic and topic[1] == robot and topic[0] in (topics.TRUTH, topics.MOVE):
-                kind = "truth" if topic[0] is topics.TRUTH else "move"
-                found[kind].append((message.publish_time, topic[0].message.FromString(message.data)))
-    truths = [(t_ns, truth) for t_ns, truth in found["truth"] if isinstance(truth, pb.Truth)]
-    moves = [(t_ns, move) for t_ns, move in found["move"] if isinstance(move, pb.Move) and not move.blocked]
-    return sorted(truths, key=lambda pair: pair[0]), sorted(moves, key=lambda pair: pair[0])
+        for _, _, message in make_reader(file).iter_messages(topics=[topic.key(robot)]):
+            found.append((message.publish_time, topic.message.FromString(message.data)))
+    return sorted(found, key=lambda pair: pair[0])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,13 +13,14 @@ import numpy as np
 import pytest
 
 from robot_agent.drivers.epuck_body import EpuckBody
-from robot_agent.drivers.epuck_driver import KINDS, opened_body
+from robot_agent.drivers.epuck_driver import KINDS, now_at, opened_body
 from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry, WheelSpeeds
 from robot_agent.drivers.robot_link import wrapped_difference
+from robot_agent.drivers.watchdog_process import WatchdogProcess
 from robot_agent.emulator.emulation import Emulation, RobotToEmulate, default_address
 from robot_agent.emulator.faults import Faults
 from swarm.clock import unix_clock
-from tests.support.emulated_robot import HALL, LINKS, MIDDLE
+from tests.support.emulated_robot import HALL, LINKS, MIDDLE, EmulatedRig
 
 SPEEDS = (WheelSpeeds(600.0, 500.0), WheelSpeeds(-300.0, 400.0), STOPPED, STOPPED)
 TICKS_A_SPEED = 8
@@ -77,6 +80,65 @@ def _driven(body: EpuckBody, ticks: int) -> float:
         if ended and tick >= ticks + 5 and body.health.reading_age_s < 0.2:
             return silence_s
     raise AssertionError("the clock never ends")
+
+
+def test_a_watchdog_that_is_killed_is_replaced(tmp_path: Path) -> None:
+    """The new one stops the robot first; the counts go on."""
+    wanted = RobotToEmulate("serial", HALL, MIDDLE)
+    events: list[tuple[str, str]] = []
+    address = default_address("serial", tmp_path, "robot")
+    with Emulation(wanted, address, time.monotonic_ns, np.random.default_rng(4)) as emulation:
+        channel = WatchdogProcess(KINDS["serial"].opener, emulation.address, 1.0)
+        body = EpuckBody(channel, EpuckGeometry(), now_at(1.0), 1.0, lambda *event: events.append(event))
+        body.wait_for_robot()
+        before = body.wheel_steps(0)
+        os.kill(channel.pid, signal.SIGKILL)
+        silence_s = _driven(body, 20)
+        after = body.wheel_steps(0)
+        with emulation.lock:
+            counters = emulation.robot.counters(time.monotonic_ns())
+        body.close()
+    print("watchdog killed", silence_s)
+    assert ("watchdog", "the watchdog has ended; a new one stops the robot and goes on") in events
+    assert after != before
+    assert wrapped_difference(after.left, counters[0]) == wrapped_difference(after.right, counters[1]) == 0
+
+
+@pytest.mark.parametrize("left_over", [b"\n", b"\xbc\x01", b"V", b"\xf7"], ids=repr)
+def test_a_serial_robot_that_is_lost_in_its_bytes_is_led_back(left_over: bytes, tmp_path: Path) -> None:
+    """A line feed too much, a batch or a text that was cut: the firmware would wait for ever."""
+    rig = EmulatedRig("serial", "epuck2", tmp_path)
+    with open(rig.emulation.address, "wb", buffering=0) as line:
+        line.write(left_over)
+    t_ns, silent = rig.clock.t_ns, 0
+    for _ in range(10):
+        t_ns += 100_000_000
+        rig.run_to(t_ns)
+        rig.body.wheel_steps(t_ns)
+        silent += rig.body.health.reading_age_s > 0.05
+        rig.body.drive(SPEEDS[0], t_ns)
+    rig.run_to(t_ns + 1)
+    rig.close()
+    assert silent <= 4
+    assert rig.emulation.robot.commanded != (0, 0), "it obeys again"
+
+
+@pytest.mark.parametrize(("link", "model"), LINKS, ids=["-".join(link) for link in LINKS])
+def test_a_robot_that_was_reset_goes_on_from_the_counts_it_had(link: str, model: str, tmp_path: Path) -> None:
+    rig = EmulatedRig(link, model, tmp_path)
+    t_ns = rig.clock.t_ns
+    for tick in range(100):
+        t_ns += 100_000_000
+        rig.run_to(t_ns)
+        steps = rig.body.wheel_steps(t_ns)
+        rig.body.drive(SPEEDS[0], t_ns)
+        if tick == 50:
+            at_reset = steps
+            rig.emulation.robot.reset(t_ns)
+    rig.close()
+    assert rig.body.health.refused_readings == 1
+    driven = 5.0 * SPEEDS[0].left_steps_per_s
+    assert 0.9 * driven < steps.left - at_reset.left < 1.01 * driven
 
 
 def says(findings: Findings, name: str, text: str) -> bool:
