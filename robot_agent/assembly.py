@@ -56,17 +56,11 @@ class Assembly:
     def agent(self, name: str) -> Agent:
         """The agent of the robot with this id."""
         settings, robot = self._experiment, self._experiment.robot_named(name)
+        parts = self.driver_parts(name)
 
         def publish(topic: Topic[Any], message: Message) -> None:
             self._node.publish(topic, message, name)
 
-        generator = partial(self._generator, robot)
-        geometry = EpuckGeometry.calibrated(robot.wheel_diameter_m, robot.wheel_base_m)
-        place = self._place
-        address = place.addresses.get(name, robot.address)
-        parts = DriverParts(
-            settings, robot, geometry, self._node, generator, address, place.speed, place.lockstep
-        )
         driver = make_driver(parts)
         policy = self._policy(robot, publish)
         estimator = PoseEstimator(parts.geometry)
@@ -82,6 +76,20 @@ class Assembly:
             settings.learning.blocked_move_s,
             settings.learning.rest_s,
             _visits(parts, driver, policy, estimator.pose, publish),
+        )
+
+    def driver_parts(self, name: str) -> DriverParts:
+        """What the driver of the robot with this id is made from."""
+        robot, place = self._experiment.robot_named(name), self._place
+        return DriverParts(
+            self._experiment,
+            robot,
+            EpuckGeometry.calibrated(robot.wheel_diameter_m, robot.wheel_base_m),
+            self._node,
+            partial(self._generator, robot),
+            place.addresses.get(name, robot.address),
+            place.speed,
+            place.lockstep,
         )
 
     def _policy(self, robot: RobotSettings, publish: Publish) -> Policy:

@@ -69,6 +69,11 @@ class EpuckGeometry:
         """The geometry of one real robot."""
         return cls(step_m=STEP_M * (wheel_diameter_m / NOMINAL_DIAMETER_M), wheel_base_m=wheel_base_m)
 
+    @staticmethod
+    def diameter_m(step_m: float) -> float:
+        """The diameter of a wheel with steps of this length."""
+        return NOMINAL_DIAMETER_M * (step_m / STEP_M)
+
     def wheel_speeds(self, forward_m_per_s: float, turn_rad_per_s: float) -> WheelSpeeds:
         """The wheel speeds of a differential drive for a forward and a counter-clockwise turning speed."""
         half_turn_m_per_s = 0.5 * self.wheel_base_m * turn_rad_per_s

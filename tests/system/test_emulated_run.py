@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import json
 import subprocess
+import sys
+import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
 from swarm.config.experiment import REAL_LINKS, Experiment
+from swarm.runtime.zenoh_session import Session, SessionSettings
+from tests.support.endpoints import free_endpoint
 from tests.support.stop_errors import stop_errors
 from tests.support.swarm_runs import (
     COMPARTMENT_PITCH_M,
@@ -57,6 +62,28 @@ def test_three_hundred_moves_over_each_link_end_where_they_should(link: str, tmp
     errors = stop_errors(tmp_path / "run" / "trial-000.mcap", Experiment.load(file), link)
     assert errors.p99_cm <= 0.7
     assert errors.wall_contacts == 0
+
+
+@pytest.mark.long
+def test_wheels_are_calibrated_over_a_link_under_the_running_tracker(tmp_path: Path) -> None:
+    """Hub, tracker bridge, emulator and calibration, each a process of its own."""
+    text = emulated_text(("serial",), moves=1) + "[body]\ngain_error_sd = 0.0\n"
+    text = text.replace("width_m = 13.0", "width_m = 13.0\nheight_m = 13.0\ncell_m = 1.0")
+    file, endpoint = write_experiment(tmp_path, text), free_endpoint()
+    at = f"--address=serial={tmp_path / 'robot'}"
+    pace = ("--connect", endpoint, "--speed", "3", "--started-ns", str(time.monotonic_ns()))
+    with Session(SessionSettings(endpoint, hub=True)), ExitStack() as ending:
+        for words in (["tracker_bridge"], ["robot_agent", "emulate-robots"]):
+            command = [sys.executable, "-m", *words, str(file), *pace, *([at] if len(words) > 1 else [])]
+            ending.callback(ending.enter_context(subprocess.Popen(command, cwd=ROOT)).kill)
+        command = [sys.executable, "-m", "robot_agent", "calibrate", "wheels", str(file), *pace, at]
+        command += ["--robot", "serial", "--json"]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    print(found)
+    assert found["wheel_diameter_m"] == pytest.approx(0.041, rel=0.01)
+    assert found["wheel_base_m"] == pytest.approx(0.053, rel=0.02)
 
 
 @pytest.mark.parametrize(
