@@ -6,10 +6,10 @@ import contextlib
 import select
 import socket
 import subprocess
-import sys
 
 from robot_agent.drivers.epuck_body import WatchdogEndedError
 from robot_agent.drivers.watchdog_messages import LONGEST_DATAGRAM
+from swarm.interpreter import child_environment, module_command
 
 END_WITHIN_S = 2.0
 """A watchdog stops its robot in one exchange; over a lost link it tries for ten seconds, by itself."""
@@ -58,7 +58,11 @@ class WatchdogProcess:
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             number = theirs.fileno()
-            command = [sys.executable, "-m", "robot_agent.drivers.watchdog", str(number), *self._arguments]
+            command = module_command("robot_agent.drivers.watchdog", str(number), *self._arguments)
             self._process = subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, pass_fds=[number], start_new_session=True
+                command,
+                stdin=subprocess.DEVNULL,
+                pass_fds=[number],
+                start_new_session=True,
+                env=child_environment(),
             )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 
-from swarm.cli.output import require_extra
 from swarm.errors import guarded
+from swarm.extras import require_extra
 
 
 def _run() -> None:

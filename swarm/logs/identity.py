@@ -6,10 +6,11 @@ import hashlib
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from swarm.config.experiment import ArenaSettings, Role
+from swarm.geometry import Grid
 from swarm.logs.reader import LogError, LogReader, open_log
 
 UNKNOWN = "unknown"
@@ -34,6 +35,8 @@ class LogIdentity:
     learners: frozenset[str]
     cell_m: float
     """The side of a cell of the grids."""
+    grid: Grid
+    """The cells of each robot's compartment."""
 
     def condition(self, robot: str) -> str:
         """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""
@@ -51,6 +54,7 @@ def identify(path: Path) -> LogIdentity:
     metadata = reader.read_metadata()
     run, robots = metadata.get("run", {}), metadata.get("robots", {})
     try:
+        arena = _arena(metadata.get("experiment", {}).get("toml", ""))
         words = {robot: _role_and_condition(text) for robot, text in robots.items()}
         return LogIdentity(
             path=path,
@@ -62,7 +66,8 @@ def identify(path: Path) -> LogIdentity:
             commit=metadata.get("versions", {}).get("commit", UNKNOWN),
             conditions={robot: condition for robot, (_, condition) in words.items()},
             learners=frozenset(robot for robot, (role, _) in words.items() if role == Role.LEARNER.value),
-            cell_m=_cell_m(metadata.get("experiment", {}).get("toml", "")),
+            cell_m=arena.cell_m,
+            grid=Grid(arena.columns, arena.rows),
         )
     except (KeyError, ValueError) as error:
         reason = "does not say which run and trial it holds: was it recorded by swarm-server?"
@@ -76,14 +81,16 @@ def _role_and_condition(text: str) -> tuple[str, str]:
     return role, condition
 
 
-def _cell_m(experiment: str) -> float:
-    """Of the experiment's [arena]; the default where it says nothing that makes sense."""
-    default_m = ArenaSettings().cell_m
+def _arena(experiment: str) -> ArenaSettings:
+    """The experiment's [arena]; the default where it says nothing that makes sense."""
+    default = ArenaSettings()
     try:
-        cell_m = float(tomllib.loads(experiment).get("arena", {}).get("cell_m", default_m))
+        said = {**vars(default), **tomllib.loads(experiment).get("arena", {})}
+        cell_m, columns, rows = float(said["cell_m"]), int(said["columns"]), int(said["rows"])
     except (ValueError, TypeError, AttributeError):
-        return default_m
-    return cell_m if 0 < cell_m < math.inf else default_m
+        return default
+    sensible = 0 < cell_m < math.inf and columns > 0 and rows > 0
+    return replace(default, cell_m=cell_m, columns=columns, rows=rows) if sensible else default
 
 
 def _count(text: str) -> int:

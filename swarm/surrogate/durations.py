@@ -13,6 +13,8 @@ import numpy as np
 from swarm.errors import UserError
 from swarm.geometry import MOVES, Move
 
+MEASURED_DURATIONS = Path(__file__).parent / "data" / "durations.csv"
+"""Measured in the full simulation; comes with the package."""
 COLUMNS = ["kind", "duration_s"]
 HEADING_AT_THE_START = int(Move.E)
 HEADING_AFTER_THE_DRIVE_BACK = int(Move.NW)
