@@ -67,12 +67,7 @@ class Reporter:
             bad_messages=bad_messages,
         )
         if health:
-            message.battery_v = health.battery_v
-            message.proximity.extend(health.proximity)
-            message.reading_age_s = min(health.reading_age_s, LONGEST_AGE_S)
-            message.failed_exchanges = health.failed_exchanges
-            message.refused_readings = health.refused_readings
-            message.refused_commands = health.refused_commands
+            _tell_health(message, health)
         self._publish(topics.STATUS, message)
 
     def warning(self, name: str, text: str) -> None:
@@ -130,3 +125,13 @@ class Reporter:
 
     def _publish(self, topic: Topic[M], message: M) -> None:
         self._node.publish(topic, message, self._robot)
+
+
+def _tell_health(message: pb.Status, health: BodyHealth) -> None:
+    """The fields that only real robots have."""
+    message.battery_v = health.battery_v
+    message.proximity.extend(health.proximity)
+    message.reading_age_s = min(health.reading_age_s, LONGEST_AGE_S)
+    message.failed_exchanges = health.failed_exchanges
+    message.refused_readings = health.refused_readings
+    message.refused_commands = health.refused_commands

@@ -170,11 +170,18 @@ def _bluetooth(address: str) -> Port:
     """The first channel that answers."""
     reason = "Python was built without Bluetooth"
     for channel in RFCOMM_CHANNELS if hasattr(socket, "AF_BLUETOOTH") else ():
-        port = socket.socket(socket.AF_BLUETOOTH, socket.SOCK_STREAM, socket.BTPROTO_RFCOMM)
         try:
-            port.connect((address, channel))
-            return port
+            return _connected(address, channel)
         except OSError as error:
-            port.close()
-            reason = str(error)
-    raise LinkError(f"cannot reach {address}: {reason}")
+            reason = f"channel {channel}: {error}"
+    raise LinkError(f"cannot reach {address}: {reason}; is the robot paired, is its selector at 3?")
+
+
+def _connected(address: str, channel: int) -> socket.socket:
+    port = socket.socket(socket.AF_BLUETOOTH, socket.SOCK_STREAM, socket.BTPROTO_RFCOMM)
+    try:
+        port.connect((address, channel))
+    except OSError:
+        port.close()
+        raise
+    return port

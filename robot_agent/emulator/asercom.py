@@ -167,7 +167,8 @@ class Asercom:
             return b"p\r\n"
         readings = {"E": robot.commanded, "C": (robot.selector,)}
         if command in "QNO":
-            readings |= {"Q": robot.counters(t_ns), "N": robot.proximity(t_ns), "O": robot.ambient()}
+            counts = robot.counts(t_ns) if self._model == "epuck2" else robot.counters(t_ns)
+            readings |= {"Q": counts, "N": robot.proximity(t_ns), "O": robot.ambient()}
         if command in readings:
             return ",".join([command.lower(), *map(str, readings[command])]).encode() + b"\r\n"
         return b"z,Command not found\r\n"

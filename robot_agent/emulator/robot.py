@@ -62,10 +62,15 @@ class EmulatedRobot:
         t_ns = self._advance(t_ns)
         self._run(left, right, t_ns)
 
-    def counters(self, t_ns: int) -> tuple[int, int]:
-        """Both step counters, 0..65535."""
+    def counts(self, t_ns: int) -> tuple[int, int]:
+        """Both step counters as the e-puck2 keeps them: they do not wrap."""
         steps = self._body.wheel_steps(self._advance(t_ns))
-        return (steps.left + self._offsets[0]) & 0xFFFF, (steps.right + self._offsets[1]) & 0xFFFF
+        return steps.left + self._offsets[0], steps.right + self._offsets[1]
+
+    def counters(self, t_ns: int) -> tuple[int, int]:
+        """Both step counters as all binary protocols send them, 0..65535."""
+        left, right = self.counts(t_ns)
+        return left & 0xFFFF, right & 0xFFFF
 
     def set_counters(self, left: int, right: int, t_ns: int) -> None:
         """Make the counters show these numbers now."""
@@ -111,6 +116,7 @@ class EmulatedRobot:
         """Let the TV remote do what it does up to now."""
         if self._began_ns is None:
             self._began_ns = t_ns
+            self._body.wheel_steps(t_ns)
             self._remote_due_ns = t_ns + round(self.faults.remote_after_s * NS_PER_S)
         while self.faults.remote_after_s and self._remote_due_ns <= t_ns:
             self._run(REMOTE_SPEED, REMOTE_SPEED, self._remote_due_ns)

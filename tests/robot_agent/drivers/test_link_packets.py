@@ -68,7 +68,7 @@ def test_serial_text_is_answered_line_by_line() -> None:
     assert asercom.receive(b"V\r", 0).startswith(b"v,Version 2.0 ")
     assert asercom.receive(b"D,100,-100\r", 0) == b"d\r\n"
     assert asercom.receive(b"E\r", 0) == b"e,100,-100\r\n"
-    assert asercom.receive(b"Q\r", NS_PER_S) == b"q,100,65436\r\n"
+    assert asercom.receive(b"Q\r", NS_PER_S) == b"q,100,-100\r\n", "as text the counts do not wrap"
     assert asercom.receive(b"X\r", NS_PER_S) == b"z,Command not found\r\n"
     assert asercom.receive(b"R\r", NS_PER_S) == b"", "the e-puck2 passes a reset over in silence"
     assert talked_to("epuck1").receive(b"R\r", 0) == b"r\r\n" + GREETING
@@ -175,6 +175,11 @@ def test_the_spi_words_are_the_documents() -> None:
     assert words[22:24] == (500, 65_536 - 250)
     assert spi.parsed_reply(reply).left == 500
     assert emulated.lights == 3
+
+
+def test_a_bluetooth_robot_that_is_not_there_is_named_with_its_cure() -> None:
+    with pytest.raises(LinkError, match=r"cannot reach 10:00:E8:AD:12:34: .*selector at 3"):
+        serial.open_link("10:00:E8:AD:12:34")
 
 
 def test_motors_run_at_the_speeds_that_the_documents_list() -> None:
