@@ -66,3 +66,4 @@ messages: setup
 # The parts of the documentation that are made from the code; tests compare them.
 docs: setup
 	$(BIN)/python -m swarm.messages.topic_reference > docs/keys.md
+	$(BIN)/python -m swarm.analysis.table_reference > docs/tables.md

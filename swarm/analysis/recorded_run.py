@@ -68,7 +68,7 @@ class RecordedRun:
 
     def learning_curves(self) -> pl.DataFrame:
         """Best path length: a row a condition and point, `mean` over trials with its 95 % interval."""
-        return curve_table(self._curves)
+        return curve_table(self._curves.curves)
 
     def trial_curves(self) -> pl.DataFrame:
         """Best path length: a row a condition, trial and point, before any averaging."""
@@ -102,7 +102,7 @@ class RecordedRun:
 
     @cached_property
     def _curves(self) -> RunCurves:
-        return run_curves(pl.read_parquet(self._learning.tables["best_paths"]))
+        return run_curves(pl.read_parquet(self._learning.tables["best_paths"]), self._inputs.shortest_moves)
 
     @cached_property
     def _copying(self) -> Copying:

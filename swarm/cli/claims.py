@@ -33,7 +33,7 @@ def judge_claims(words: Sequence[str], command: str, **asked: Any) -> tuple[dict
 
     assessment = assess(chosen_names(words or ["all"]), Settings(**asked))
     files = {form: str(path) for form, path in write_report(assessment, command).items()}
-    lines = [f"{one.claim.figure}: {one.verdict.value}: {one.claim.text}" for one in assessment.judged]
+    lines = [f"{one.figure}: {one.verdict.value}: {one.claim.text}" for one in assessment.judged]
     return {**as_json(assessment), "files": files}, [*lines, summary(assessment), *files.values()]
 
 

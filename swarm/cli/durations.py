@@ -39,6 +39,7 @@ def measured_in(runs: list[Path]) -> dict[str, list[float]]:
     import polars as pl
 
     from swarm.analysis.inputs import find_inputs
+    from swarm.geometry import Move
     from swarm.logs.parquet import read_logs
     from swarm.surrogate.durations import Step, measured
 
@@ -54,7 +55,7 @@ def measured_in(runs: list[Path]) -> dict[str, list[float]]:
     steps = (
         Step(
             f"{row['log']}/{row['robot']}",
-            row["action"],
+            Move[row["action"]],
             row["blocked"],
             row["next_state"] == goals[row["log"]],
             row["duration_s"],

@@ -65,8 +65,10 @@ def _curves_of(runs: list[Path]) -> dict[str, Curves]:
 
     require_extra("lab", "mcap")
     with tempfile.TemporaryDirectory() as folder:
-        tables = read_logs(find_inputs(runs).logs, Path(folder), False, lambda _: None).tables
-        return run_curves(pl.read_parquet(tables["best_paths"])).curves
+        logs = find_inputs(runs).logs
+        tables = read_logs(logs, Path(folder), False, lambda _: None).tables
+        shortest_moves = min(log.shortest_moves for log in logs)
+        return run_curves(pl.read_parquet(tables["best_paths"]), shortest_moves).curves
 
 
 def trials_command(
@@ -127,12 +129,14 @@ def _lines(result: dict[str, Any]) -> list[str]:
     lines = []
     for name, found in result["conditions"].items():
         if "stays_low_from" in found:
-            at = ", ".join(
-                f"{move}: {mean} ±{half}" for move, (mean, half) in found["mean_and_half_interval"].items()
-            )
-            lines.append(
-                f"{name} ({found['trials']} trials): {at}; 12 or less from {found['stays_low_from']}"
-            )
+            at = ", ".join(_at(move, *numbers) for move, numbers in found["mean_and_interval"].items())
+            low_from = found["stays_low_from"]
+            end = "never 12 or less to the end" if low_from is None else f"12 or less from {low_from:.0f} on"
+            lines.append(f"{name} ({found['trials']} trials): {at}; {end}")
     copies = result["conditions"]["copies"]
     lines.append(f"paths remembered: {copies['remembered']}, of which wrong: {copies['wrong']}")
     return [*lines, *(f"wrote {path}" for path in result["files"].values())]
+
+
+def _at(move: str, mean: float, low: float | None, high: float | None) -> str:
+    return f"{move}: {mean}" if low is None else f"{move}: {mean} ({low} to {high})"

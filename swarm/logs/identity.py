@@ -43,6 +43,11 @@ class LogIdentity:
         return self.conditions.get(robot, "" if robot in ("tracker", "server", "run") else UNKNOWN)
 
     @property
+    def shortest_moves(self) -> int:
+        """From a grid's start to its goal, the opposite corner."""
+        return max(self.grid.columns, self.grid.rows) - 1
+
+    @property
     def replicate(self) -> tuple[int, int]:
         """(seed, trial): two conditions measured in the same one form a pair."""
         return self.seed, self.trial
@@ -53,8 +58,9 @@ def identify(path: Path) -> LogIdentity:
     reader = LogReader(path)
     metadata = reader.read_metadata()
     run, robots = metadata.get("run", {}), metadata.get("robots", {})
+    experiment = metadata.get("experiment", {}).get("toml", "")
     try:
-        arena = _arena(metadata.get("experiment", {}).get("toml", ""))
+        arena = _arena(experiment)
         words = {robot: _role_and_condition(text) for robot, text in robots.items()}
         return LogIdentity(
             path=path,

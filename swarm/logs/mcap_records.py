@@ -97,6 +97,7 @@ def _body(file: BinaryIO, header: bytes, offset: int, size: int) -> tuple[int, b
 
 
 MESSAGE = 0x05
+"""The opcode of a message in the MCAP specification."""
 _MESSAGE = struct.Struct("<HIQQ")
 
 

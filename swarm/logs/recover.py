@@ -26,6 +26,7 @@ from swarm.logs.mcap_records import (
 from swarm.logs.reader import Damage, LogError, open_log
 
 CHUNK_BYTES = 256 * 1024
+"""What another damage could cost, against how well a chunk is compressed."""
 
 
 @dataclass(frozen=True)

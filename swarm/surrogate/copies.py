@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from swarm.errors import UserError
+from swarm.files import new_csv
 from swarm.geometry import MOVES, Move
 from swarm.learning.alignment import aligned
 
@@ -78,16 +79,7 @@ def turns_of(pair: CopyPair) -> list[list[int]]:
 
 def write_copies(pairs: Iterable[CopyPair], path: Path, told: Sequence[str]) -> None:
     """A new CSV file; `told` says how it was made, in lines before the header. UserError if it is there."""
-    try:
-        with path.open("x", newline="", encoding="utf-8") as file:
-            file.writelines(f"# {line}\n" for line in told)
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(COLUMNS)
-            writer.writerows([pair.kind, _text(pair.true), _text(pair.copied)] for pair in pairs)
-    except FileExistsError as error:
-        raise UserError(f"{path} is there already: choose another name or remove it") from error
-    except OSError as error:
-        raise UserError(f"{path}: cannot be written ({error.strerror})") from error
+    new_csv(path, told, COLUMNS, ([pair.kind, _text(pair.true), _text(pair.copied)] for pair in pairs))
 
 
 def load_copies(path: Path) -> CopyStore:

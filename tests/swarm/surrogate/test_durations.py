@@ -85,7 +85,7 @@ def test_stored_durations_are_drawn(tmp_path: Path) -> None:
     write_durations({kind: [1.5, 2.5] for kind in KINDS}, tmp_path / "d.csv", "how")
     durations, rng = load_durations(tmp_path / "d.csv"), np.random.default_rng(1)
     assert {durations.drawn("drive_back", rng) for _ in range(50)} == {1.5, 2.5}
-    with pytest.raises(UserError, match="is there already"):
+    with pytest.raises(UserError, match="exists already"):
         write_durations({}, tmp_path / "d.csv", "how")
 
 

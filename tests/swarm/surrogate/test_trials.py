@@ -40,7 +40,7 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 def test_imitating_an_expert_pays(result: dict[str, Any]) -> None:
     """Figure 25's effect at move 1,000, in six trials."""
-    at = {name: result["conditions"][name]["mean_and_half_interval"]["1000"] for name in CONDITIONS}
+    at = {name: result["conditions"][name]["mean_and_interval"]["1000"] for name in CONDITIONS}
     assert at["imitation"][0] < 40 < 75 < at["no-imitation"][0]
     assert 30 < result["conditions"]["copies"]["remembered"] <= 60, "ten of each trial, if it gets that far"
 
