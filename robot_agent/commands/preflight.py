@@ -8,8 +8,9 @@ from enum import Enum
 from itertools import islice
 
 from robot_agent.drivers.deadline import STOP_WITHIN_S
-from robot_agent.drivers.epuck_body import LOW_BATTERY_V, EpuckBody
+from robot_agent.drivers.epuck_body import EpuckBody
 from robot_agent.drivers.kinematics import STOPPED, WheelSpeeds, WheelSteps
+from robot_agent.drivers.notices import LOW_BATTERY_V
 
 SLOW_STEPS_PER_S = 200.0
 """2.6 cm/s: slow enough to catch the robot."""

@@ -9,6 +9,7 @@ from robot_agent.drivers.deadline import COMMAND_HOLDS_S
 from robot_agent.drivers.health import BodyHealth
 from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry, WheelSpeeds, WheelSteps
 from robot_agent.drivers.motors import EPUCK1
+from robot_agent.drivers.notices import Notices, Say
 from robot_agent.drivers.robot_link import Reading
 from robot_agent.drivers.step_gate import StepGate
 from robot_agent.drivers.watchdog_messages import Answer, Event, Identity, Picture, Request, Said, unpacked
@@ -19,16 +20,6 @@ ANSWER_WITHIN_S = 0.05
 """Half a control period: an agent whose robot does not answer goes on with the counts that it had."""
 FIRST_ANSWER_WITHIN_S = 10.0
 """A Bluetooth connection takes some seconds."""
-
-LOW_BATTERY_V = 3.5
-"""An e-puck2 switches itself off at 3.2 V (battery_level.h: empty is 3.4 V)."""
-SETTLES_IN_NS = 1_000_000_000
-"""So long after its last command a robot stands, over the slowest link."""
-STEPS_BY_ITSELF = 20
-"""2.6 mm: more than a wheel that is touched."""
-
-Say = Callable[[str, str], None]
-"""Takes the name and the text of an event for the log."""
 
 
 class WatchdogEndedError(Exception):
@@ -66,6 +57,7 @@ class EpuckBody:
         self._now_ns = now_ns
         self._speed = speed
         self._say = say
+        self._notices = Notices(say)
         self._gate = StepGate()
         self._motors = EPUCK1
         self._number = 0
@@ -79,9 +71,6 @@ class EpuckBody:
         self._picture: Picture | None = None
         self._reading_ns = 0
         self._closed = False
-        self._stood_at: WheelSteps | None = None
-        self._settled_ns = 0
-        self._said_low = self._said_moved = False
 
     def wait_for_robot(self, within_s: float = FIRST_ANSWER_WITHIN_S) -> str:
         """The robot's identity, once it answers. UserError if it does not."""
@@ -93,9 +82,7 @@ class EpuckBody:
         return self._identity
 
     def drive(self, speeds: WheelSpeeds, t_ns: int) -> WheelSpeeds:  # noqa: ARG002
-        before, self._commands = self._commands, self._motors.sendable(speeds, self._geometry.max_steps_per_s)
-        if any(before):
-            self._settled_ns = self._now_ns() + SETTLES_IN_NS
+        self._commands = self._motors.sendable(speeds, self._geometry.max_steps_per_s)
         self._send(drives=True)
         return self._motors.running(self._commands)
 
@@ -182,21 +169,5 @@ class EpuckBody:
             reading = heard.reading
             if reading and self._gate.take(reading.left, reading.right, heard.t_ns):
                 self._reading, self._reading_ns = reading, heard.t_ns
-                self._look_after(reading)
-
-    def _look_after(self, reading: Reading) -> None:
-        """Say once what a person should do something about."""
-        if 0 < reading.battery_v < LOW_BATTERY_V and not self._said_low:
-            self._said_low = True
-            self._say("battery", f"{reading.battery_v:.2f} V: charge the robot")
-        if any(self._commands):
-            self._stood_at = None
-        elif self._stood_at is None or self._now_ns() < self._settled_ns:
-            self._stood_at = self._gate.steps
-        elif not self._said_moved and _apart(self._gate.steps, self._stood_at) > STEPS_BY_ITSELF:
-            self._said_moved = True
-            self._say("moved", "the wheels turn without a command: a TV remote, or a second program?")
-
-
-def _apart(steps: WheelSteps, others: WheelSteps) -> int:
-    return max(abs(steps.left - others.left), abs(steps.right - others.right))
+                commanded = any(self._commands)
+                self._notices.look(reading, self._gate.steps, heard.t_ns, is_commanded=commanded)

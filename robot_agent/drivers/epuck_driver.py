@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
 
-from robot_agent.drivers.epuck_body import EpuckBody, Say
+from robot_agent.drivers.epuck_body import EpuckBody
 from robot_agent.drivers.interfaces import Camera, DriverParts
 from robot_agent.drivers.kinematics import EpuckGeometry
+from robot_agent.drivers.notices import Say
 from robot_agent.drivers.watchdog_process import WatchdogProcess
 from robot_agent.vision.camera_model import CameraModel
 from swarm.errors import UserError

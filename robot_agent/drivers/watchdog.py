@@ -31,6 +31,8 @@ REOPEN_NS = NS_PER_S // 2
 GIVE_UP_NS = 10 * NS_PER_S
 """Without its agent, the watchdog tries to stop the robot for so long over a lost link."""
 
+MISTAKE = "mistake in the link's driver, please report it"
+
 OpenLink = Callable[[], RobotLink]
 
 
@@ -115,7 +117,10 @@ class Watchdog:
         except ReplyError:
             self.failures += 1
         except (LinkError, OSError) as error:
-            self._lose(error)
+            self._lose(f"link lost: {error}")
+        except Exception as error:
+            # A mistake in a link's own code must not end what stops the robot.
+            self._lose(f"{MISTAKE}: {error!r}")
         return None
 
     def _opened(self, now_ns: int) -> bool:
@@ -138,7 +143,7 @@ class Watchdog:
             self._lost_ns = None
         return True
 
-    def _lose(self, error: Exception) -> None:
+    def _lose(self, why: str) -> None:
         assert self._link
         with suppress(OSError):
             self._link.close()
@@ -146,7 +151,7 @@ class Watchdog:
         self._wanted = Actuators()
         self._lost_ns = self._now_ns()
         self._reopen_ns = self._lost_ns
-        self._report(Event(f"link lost: {error}").pack())
+        self._report(Event(why).pack())
 
     def close(self) -> None:
         if self._link:
@@ -199,7 +204,6 @@ def main() -> None:
         signal.signal(number, signal.SIG_IGN)
     with suppress(OSError, AttributeError):
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
-    open_link = link_opener(opener)
     speed = float(speed_text)
 
     def now_ns() -> int:
@@ -211,6 +215,11 @@ def main() -> None:
         with suppress(OSError):
             agent.send(message)
 
+    try:
+        open_link = link_opener(opener)
+    except (ImportError, AttributeError) as error:
+        report(Event(f"no link: {error}").pack())
+        return
     serve(agent, Watchdog(lambda: open_link(address), now_ns, report), now_ns, speed)
 
 

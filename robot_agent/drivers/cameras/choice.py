@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from robot_agent.drivers.cameras.fitted import FittedCamera, Say, TakeFrame
+from robot_agent.drivers.cameras.fitted import FittedCamera, TakeFrame
 from robot_agent.drivers.cameras.stored import folder_frames, video_frames
 from robot_agent.drivers.cameras.v4l2 import v4l2_frames
+from robot_agent.drivers.notices import Say
 from robot_agent.vision.camera_model import CameraModel
 from swarm.errors import UserError
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
+from robot_agent.drivers.notices import Say
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.frames import Frame
 from robot_agent.vision.pixels import frame_pixels
@@ -18,7 +19,6 @@ SAME_BEFORE_FROZEN = 5
 
 TakeFrame = Callable[[], Frame | None]
 """The newest frame, its `t_ns` by the machine's monotonic clock; None if none came since the last call."""
-Say = Callable[[str, str], None]
 
 
 class FittedCamera:

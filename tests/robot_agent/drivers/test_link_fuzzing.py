@@ -22,7 +22,7 @@ from robot_agent.drivers.serial import SerialLink
 from robot_agent.drivers.sim.body import BodyFaults, SimulatedBody
 from robot_agent.drivers.spi import SpiLink
 from robot_agent.drivers.step_gate import FASTEST_STEPS_PER_S, SLACK_STEPS
-from robot_agent.drivers.watchdog import Watchdog
+from robot_agent.drivers.watchdog import MISTAKE, Watchdog
 from robot_agent.drivers.wifi import WifiLink
 from robot_agent.emulator.asercom import Asercom
 from robot_agent.emulator.buses import EmulatedSmbus, EmulatedSpiDev
@@ -172,12 +172,18 @@ def fuzzed(link: str, model: str, seed: int) -> Iterator[tuple[FuzzedRobot, Epuc
     robot = FuzzedRobot(link, model, seed)
     heard: deque[bytes] = deque()
     watchdog = Watchdog(robot.open, robot.clock.now_ns, heard.append)
+    events: list[tuple[str, str]] = []
     body = EpuckBody(
-        LocalChannel(watchdog, heard), EpuckGeometry(), robot.clock.now_ns, 1.0, lambda *_event: None
+        LocalChannel(watchdog, heard),
+        EpuckGeometry(),
+        robot.clock.now_ns,
+        1.0,
+        lambda *event: events.append(event),
     )
     body.wait_for_robot()
     robot.mutate.on = True
     yield robot, body
+    assert not [text for _, text in events if MISTAKE in text]
     robot.mutate.on = False
     watchdog.close()
     robot.close()
