@@ -58,7 +58,7 @@ def test_robots_behind_every_link_and_a_simulated_one_learn_in_one_run(tmp_path:
 @pytest.mark.parametrize("link", REAL_LINKS)
 def test_three_hundred_moves_over_each_link_end_where_they_should(link: str, tmp_path: Path) -> None:
     file = write_experiment(tmp_path, emulated_text((link,), moves=300))
-    run_server(file, tmp_path / "run", "--emulate", "--speed", "5")
+    run_server(file, tmp_path / "run", "--emulate", "--speed", "3")
     errors = stop_errors(tmp_path / "run" / "trial-000.mcap", Experiment.load(file), link)
     assert errors.p99_cm <= 0.7
     assert errors.wall_contacts == 0
