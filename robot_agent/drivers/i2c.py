@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
+from fcntl import ioctl
 from functools import reduce
 from operator import xor
 from pathlib import Path
@@ -20,6 +21,9 @@ ADDRESS = 0x1F
 BUSES = ("12", "4")
 """The robot's bus has number 12 on new kernels and 4 on older ones."""
 EMULATED = "unix:"
+TIMEOUT_REQUEST = 0x0702
+TIMEOUT_TENS_OF_MS = 2
+"""Linux's I2C_TIMEOUT; GCtronic's example sets 20 ms on the Pi-puck."""
 ATTEMPTS = 3
 """About 1 transfer in 1000 fails on a Pi-puck."""
 TRANSFERS_BEFORE_LOST = 25
@@ -227,14 +231,22 @@ def _opened(name: str) -> BlockLink | RegisterLink:
 
         bus = I2cBus(remote_smbus(name.removeprefix(EMULATED)))
     else:
-        import smbus2
-
-        bus = I2cBus(smbus2.SMBus(int(name)))
+        bus = I2cBus(_bus_of_this_machine(int(name)))
     try:
         return probed(bus, _battery_v)
     except BaseException:
         bus.close()
         raise
+
+
+def _bus_of_this_machine(number: int) -> Smbus:
+    """A bus that gives a transfer up soon: one that fails would else block for a second."""
+    import smbus2
+
+    bus = smbus2.SMBus(number)
+    ioctl(bus.fd, TIMEOUT_REQUEST, TIMEOUT_TENS_OF_MS)
+    opened: Smbus = bus
+    return opened
 
 
 def _battery_v() -> float:
