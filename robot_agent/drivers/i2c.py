@@ -244,7 +244,8 @@ def _bus_of_this_machine(number: int) -> Smbus:
     import smbus2
 
     bus = smbus2.SMBus(number)
-    ioctl(bus.fd, TIMEOUT_REQUEST, TIMEOUT_TENS_OF_MS)
+    if bus.fd is not None:
+        ioctl(bus.fd, TIMEOUT_REQUEST, TIMEOUT_TENS_OF_MS)
     opened: Smbus = bus
     return opened
 
