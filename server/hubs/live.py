@@ -11,6 +11,7 @@ from google.protobuf.message import Message
 from server.hubs.hub import Batch
 from swarm.clock import WallClock
 from swarm.config.experiment import Experiment
+from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import Delivery, Topic
 from swarm.runtime.liveliness import present
@@ -41,6 +42,7 @@ class LiveHub:
         self._warn = warn
         self._inboxes = [session.inbox(key, Delivery.EVERY) for key in EVERYTHING]
         self._live = LivePublisher(session, clock, epoch=time.time_ns())
+        self._ended = False
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
 
@@ -58,13 +60,16 @@ class LiveHub:
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         self._live.publish(topic, message, robot)
+        if isinstance(message, pb.RunState) and message.phase == pb.RunState.ENDED:
+            self._ended = True
 
     def advance(self) -> None:
         """In real time the processes need no leave."""
 
     def gather(self) -> Batch:
         t_ns = next(self._ticks)
-        self._check()
+        if not self._ended:
+            self._check()
         return Batch(t_ns, [item for inbox in self._inboxes for item in self._items(inbox.poll())])
 
     def unsent(self) -> Batch:

@@ -18,11 +18,12 @@ from server.hubs.live import LiveHub
 from server.hubs.lockstep import LockstepHub
 from server.processes.cpu_affinity import keeping_to, place, spread
 from server.processes.placement_probe import PlacementProbe
-from server.processes.run_table import Pace, run_table
+from server.processes.run_table import Pace, emulated_addresses, run_table
 from server.processes.supervisor import Supervisor
 from server.reporter import Reporter
 from swarm.clock import scaled_clock, unix_clock
-from swarm.config.experiment import Experiment
+from swarm.config.experiment import REAL_LINKS, Experiment
+from swarm.errors import UserError
 from swarm.parallel import available_cores
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import patient
@@ -64,17 +65,22 @@ Warn = Callable[[str], None]
 
 @contextmanager
 def simulated(
-    experiment: Experiment, speed: float | None, warn: Warn, plan: TrialPlan
+    experiment: Experiment, speed: float | None, warn: Warn, plan: TrialPlan, *, emulate: bool = False
 ) -> Iterator[TrialEnvironment]:
-    """Processes on this machine, in lockstep (`speed` None) or so many times as fast as life."""
+    """Processes on this machine, in lockstep (`speed` None) or so many times as fast as life.
+
+    Robots with real links are emulated if `emulate` says so.
+    """
     pace = Pace(speed is None, speed or 1.0, time.monotonic_ns())
     cores = available_cores()
     with (
         socket_endpoint() as endpoint,
         keeping_to(cores[0]) if pace.lockstep else nullcontext(),
         Session(_hub_settings(endpoint, pace)) as session,
+        TemporaryDirectory(prefix="robots-") as sockets,
     ):
-        specs = run_table(experiment, plan.file, endpoint, plan.trial, pace, plan.output)
+        emulated = emulated_addresses(experiment, Path(sockets)) if emulate else {}
+        specs = run_table(experiment, plan.file, endpoint, plan.trial, pace, plan.output, emulated)
         claim(session, _presence())
         with Supervisor(specs, plan.output, spread(len(specs), cores)) as supervisor:
             core_of = {os.getpid(): cores[0], **supervisor.core_of}
@@ -82,6 +88,19 @@ def simulated(
             hub, flush_every = _hub(experiment, session, pace, supervisor, warn, probe)
             reporter = Reporter(hub)
             yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every)
+
+
+def require_emulation(experiment: Experiment, speed: float | None, *, emulate: bool) -> None:
+    """UserError for a robot that a simulation could not reach, or that cannot be emulated like this."""
+    real = [robot for robot in experiment.robot if robot.driver in REAL_LINKS]
+    if real and not emulate:
+        raise UserError(
+            f"robot {real[0].id!r} has driver {real[0].driver!r}: a simulation needs --emulate and --speed X"
+        )
+    if emulate and speed is None:
+        raise UserError("--emulate needs --speed X: bytes on a link take their own time")
+    if emulate and not real:
+        raise UserError(f"--emulate: no robot's driver is one of {', '.join(REAL_LINKS)}")
 
 
 def _hub_settings(endpoint: str, pace: Pace) -> SessionSettings:

@@ -30,6 +30,10 @@ BEYOND_CORNER_M = 0.05
 """So far in x and in y: the observer's body, of 0.035 m radius, is wholly outside the compartment."""
 
 
+REAL_LINKS = ("serial", "wifi", "i2c", "spi")
+"""Drivers of real robots; a simulation runs them against emulated ones."""
+
+
 class Role(Enum):
     """What a robot does in its compartment."""
 
@@ -208,7 +212,15 @@ class RobotSettings:
     south_west_m: tuple[float, float]
     """The compartment's corner in the arena frame."""
     driver: str = "sim"
-    """What moves it; see how-to-add-a-driver.md."""
+    """What moves it: sim, serial, wifi, i2c, spi (robots.md), or one of your own (how-to-add-a-driver.md)."""
+    address: str = ""
+    """Where a real robot is: a serial port or Bluetooth address, HOST:PORT, an I2C bus, an SPI device."""
+    wheel_diameter_m: Annotated[float, Between(0.03, 0.06)] = 0.041
+    """Of a real robot's wheels, as calibrated; 1000 steps are a turn."""
+    wheel_base_m: Annotated[float, Between(0.04, 0.07)] = 0.053
+    """Between a real robot's wheels, as calibrated; published values go from 52 to 57 mm."""
+    camera: str = ""
+    """A real robot's camera: that on its link if empty, /dev/videoN, a folder of pictures, or a video."""
     role: Role = Role.LEARNER
     """A learner learns; an expert follows the shortest path indefinitely."""
     condition: str = ""

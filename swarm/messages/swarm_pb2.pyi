@@ -637,11 +637,33 @@ class Status(_message.Message):
     TRACKS_FIELD_NUMBER: _builtins.int
     POSE_AGE_S_FIELD_NUMBER: _builtins.int
     BAD_MESSAGES_FIELD_NUMBER: _builtins.int
+    BATTERY_V_FIELD_NUMBER: _builtins.int
+    PROXIMITY_FIELD_NUMBER: _builtins.int
+    READING_AGE_S_FIELD_NUMBER: _builtins.int
+    FAILED_EXCHANGES_FIELD_NUMBER: _builtins.int
+    REFUSED_READINGS_FIELD_NUMBER: _builtins.int
+    REFUSED_COMMANDS_FIELD_NUMBER: _builtins.int
     activity: _builtins.str
     moves: _builtins.int
     tracks: _builtins.int
     pose_age_s: _builtins.float
     bad_messages: _builtins.int
+    battery_v: _builtins.float
+    """Of real robots only; a simulated one leaves them out.
+    0 if the robot does not say
+    """
+    reading_age_s: _builtins.float
+    """since the last good answer over the link"""
+    failed_exchanges: _builtins.int
+    """exchanges without a good answer so far"""
+    refused_readings: _builtins.int
+    """step counters that the wheels cannot have made"""
+    refused_commands: _builtins.int
+    """commands that came after their deadline"""
+    @_builtins.property
+    def proximity(self) -> _containers.RepeatedScalarFieldContainer[_builtins.int]:
+        """infra-red echoes ps0 to ps7, 0..4095: 120 is a wall at 5 cm"""
+
     def __init__(
         self,
         *,
@@ -650,10 +672,16 @@ class Status(_message.Message):
         tracks: _builtins.int = ...,
         pose_age_s: _builtins.float = ...,
         bad_messages: _builtins.int = ...,
+        battery_v: _builtins.float = ...,
+        proximity: _abc.Iterable[_builtins.int] | None = ...,
+        reading_age_s: _builtins.float = ...,
+        failed_exchanges: _builtins.int = ...,
+        refused_readings: _builtins.int = ...,
+        refused_commands: _builtins.int = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["activity", b"activity", "bad_messages", b"bad_messages", "moves", b"moves", "pose_age_s", b"pose_age_s", "tracks", b"tracks"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["activity", b"activity", "bad_messages", b"bad_messages", "battery_v", b"battery_v", "failed_exchanges", b"failed_exchanges", "moves", b"moves", "pose_age_s", b"pose_age_s", "proximity", b"proximity", "reading_age_s", b"reading_age_s", "refused_commands", b"refused_commands", "refused_readings", b"refused_readings", "tracks", b"tracks"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 

@@ -1,20 +1,19 @@
-"""Tracking systems are found by entry points."""
+"""Tracking systems are found by their names."""
 
 from __future__ import annotations
-
-from importlib.metadata import entry_points
 
 import pytest
 
 from swarm.config.experiment import TrackerSettings
 from swarm.errors import UserError
+from swarm.plugins import TRACKERS, plugins
 from tests.support.tracked_swarm import tracked_experiment
 from tracker_bridge.backends.interface import Setup, TrackingSystem
-from tracker_bridge.backends.registry import GROUP, system_named
+from tracker_bridge.backends.registry import system_named
 
 
 def test_every_entry_is_a_tracking_system() -> None:
-    names = {entry.name for entry in entry_points(group=GROUP)}
+    names = set(plugins(TRACKERS))
     assert {"sim", "vicon", "natnet", "replay", "motioncapture"} <= names
     assert all(isinstance(system_named(name), TrackingSystem) for name in names)
 
