@@ -46,7 +46,7 @@ class Run:
         try:
             for trial in self.trials:
                 self.progress.begin(trial)
-                self.results.append(self._trial(trial, copy))
+                self._trial(trial, copy)
             state = "complete"
         finally:
             self._write_manifest(state)
@@ -54,14 +54,19 @@ class Run:
             self.directory.write_json("run.json", {**summary, **self._circumstances()})
         return summary
 
-    def _trial(self, trial: int, file: Path) -> TrialResult:
+    def _trial(self, trial: int, file: Path) -> None:
+        """Also of a trial that is interrupted it is known how far it came."""
         with self.set_stage(trial, file, self.directory.output(trial)) as stage:
             conductor = Conductor(self.experiment, trial, stage.hub.publish, stage.carrier)
             recorder = Recorder(
                 self.directory.log(trial), metadata(self.experiment, file, trial, self.versions)
             )
             health = Health(conductor.event)
-            return Trial(stage, conductor, recorder, health, Views(self.experiment), self.progress.show).run()
+            played = Trial(stage, conductor, recorder, health, Views(self.experiment), self.progress.show)
+            try:
+                played.run()
+            finally:
+                self.results.append(played.result())
 
     def _summary(self, wall_s: float) -> dict[str, Any]:
         logs = [self.directory.log(trial) for trial in self.trials]
@@ -89,6 +94,7 @@ class Run:
     def _write_manifest(self, state: str) -> None:
         """Conditions x trials x seeds, one record each."""
         run = self.experiment.run
+        complete = {number for number, result in enumerate(self.results) if result.complete}
         records = [
             {
                 "condition": robot.group,
@@ -97,7 +103,7 @@ class Run:
                 "trial": trial,
                 "seed": run.seed,
                 "log": self.directory.log(trial).name,
-                "state": "complete" if number < len(self.results) else state,
+                "state": "complete" if number in complete else state,
             }
             for number, trial in enumerate(self.trials)
             for robot in self.experiment.robot

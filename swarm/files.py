@@ -14,6 +14,11 @@ if TYPE_CHECKING:
     pass
 
 
+def printable(path: Path) -> str:
+    """A path as text that can be printed and stored: bytes that are no UTF-8 as escapes."""
+    return os.fsencode(path).decode("utf-8", "backslashreplace")
+
+
 def new_file(path: Path) -> BufferedWriter:
     """Open a file for writing; UserError if it is there already or cannot be made."""
     try:

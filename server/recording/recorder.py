@@ -1,9 +1,15 @@
-"""Writes what was received, as it was received: the wire bytes are the log bytes."""
+"""Writes what was received, as it was received: the wire bytes are the log bytes.
+
+A log is the same, byte for byte, in every repetition of a simulated run. So a chunk ends where its size or
+the caller says, never when a clock does. What the clock decides is how often the chunk that is still open is
+laid down behind the others, to be overwritten when it has grown: a killed server loses a moment, not a chunk.
+"""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping
+import time
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +18,17 @@ from google.protobuf.message import Message
 from small_mcap import CompressionType, McapWriter
 
 from server.hubs.hub import Batch
+from server.recording.disk_sync import DiskSync
 from swarm.files import new_file
+from swarm.logs.ending import Sender, ending_records
 from swarm.messages.topics import topic_of
+from swarm.messages.validation import MAX_PAYLOAD_BYTES
 
 CHUNK_BYTES = 256 * 1024
+LAID_DOWN_EVERY_S = 0.2
+"""Real seconds of messages that a killed server loses at most; to lay a chunk down takes about 2 ms."""
+MAX_MESSAGE_BYTES = 16 * MAX_PAYLOAD_BYTES
+"""No larger message is stored. Nobody decodes more than MAX_PAYLOAD_BYTES; a little more can be looked at."""
 
 
 class Recorder:
@@ -25,19 +38,30 @@ class Recorder:
     `sequence` is the header's, its publish time the header's, its log time the time of receipt.
     """
 
-    def __init__(self, path: Path, metadata: Mapping[str, Mapping[str, str]]) -> None:
+    def __init__(
+        self,
+        path: Path,
+        metadata: Mapping[str, Mapping[str, str]],
+        monotonic_s: Callable[[], float] = time.monotonic,
+    ) -> None:
         self._file = new_file(path)
+        self._sync = DiskSync(self._file.fileno())
+        self._monotonic_s = monotonic_s
+        self._due_s = 0.0
+        self._laid_down_end = 0
         self.path = path
         self.messages = 0
+        self.oversized: dict[str, int] = {}
+        """Keys with messages above MAX_MESSAGE_BYTES, and the number of them that were left out."""
         self.unknown_keys: dict[str, int] = {}
         """Keys that the key table does not know, with the number of messages that were left out."""
         self._writer = McapWriter(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._writer.start(profile="", library="swarm-runtime")
         self._schemas: dict[str, int] = {}
-        self._channels: dict[tuple[str, int], int | None] = {}
+        self._channels: dict[Sender, int | None] = {}
+        self._last: dict[Sender, int] = {}
         self._views: dict[str, int] = {}
-        for name, values in metadata.items():
-            self._writer.add_metadata(name, dict(values))
+        self._add_metadata(metadata)
 
     def write(self, batch: Batch) -> None:
         """Append a batch; its order is the file's order."""
@@ -46,12 +70,15 @@ class Recorder:
             if name not in self._channels:
                 self._channels[name] = self._registered(key, header.epoch)
             channel = self._channels[name]
-            if channel is None:
-                self._leave_out(key)
+            if channel is None or len(payload) > MAX_MESSAGE_BYTES:
+                self._leave_out(key, channel is not None)
             else:
                 sequence = header.sequence & 0xFFFFFFFF
                 self._writer.add_message(channel, batch.t_ns, payload, header.t_ns, sequence)
+                self._last[name] = sequence
                 self.messages += 1
+        if self._monotonic_s() >= self._due_s:
+            self._lay_down()
 
     def write_view(self, topic: str, message: Message, t_ns: int) -> None:
         """Append a message that the server made for viewers."""
@@ -71,13 +98,52 @@ class Recorder:
         if chunk is not None:
             builder.reset()
             self._writer.add_chunk(*chunk)
-        self._file.flush()
+        self._hand_over()
+
+    def end(self, state: str, reason: str, accounts: Mapping[Sender, int] | None) -> None:
+        """Write how the trial ended, and what every sender has sent by its own account.
+
+        `accounts` is None if the hub had everything that was sent, so that the last number written is the
+        last one sent.
+        """
+        self.flush()
+        self._add_metadata(ending_records(state, reason, self._last if accounts is None else accounts))
 
     def close(self) -> None:
         """Write the index and close the file; a second call does nothing."""
         if not self._file.closed:
-            self._writer.finish()
-            self._file.close()
+            try:
+                self._writer.finish()
+                self._file.truncate()
+                self._file.flush()
+            finally:
+                self._sync.close()
+                self._file.close()
+
+    def _lay_down(self) -> None:
+        """Put the open chunk where it will stand, as it is now; what is written next overwrites it."""
+        self._due_s = self._monotonic_s() + LAID_DOWN_EVERY_S
+        builder = self._writer.chunk_builder
+        assert builder is not None
+        chunk = builder.finalize()
+        if chunk is None:
+            return
+        place = self._file.tell()
+        chunk[0].write_record_to(self._file)
+        self._laid_down_end = self._file.tell()
+        self._file.flush()
+        self._file.seek(place)
+
+    def _hand_over(self) -> None:
+        """Leave nothing behind the last record: a chunk that was laid down may have been packed worse."""
+        if self._laid_down_end > self._file.tell():
+            self._file.truncate()
+        self._laid_down_end = 0
+        self._file.flush()
+
+    def _add_metadata(self, metadata: Mapping[str, Mapping[str, str]]) -> None:
+        for name, values in metadata.items():
+            self._writer.add_metadata(name, dict(values))
 
     def _registered(self, key: str, epoch: int) -> int | None:
         """The channel of a key and epoch; None for a key that is not to be logged."""
@@ -88,8 +154,10 @@ class Recorder:
         about = {"epoch": str(epoch), "robot": robot, "delivery": topic.delivery.value}
         return self._channel(key, topic.message, about)
 
-    def _leave_out(self, key: str) -> None:
-        if topic_of(key) is None:
+    def _leave_out(self, key: str, oversized: bool) -> None:
+        if oversized:
+            self.oversized[key] = self.oversized.get(key, 0) + 1
+        elif topic_of(key) is None:
             self.unknown_keys[key] = self.unknown_keys.get(key, 0) + 1
 
     def _channel(self, key: str, message: type[Message], about: dict[str, str]) -> int:

@@ -6,10 +6,11 @@ import hashlib
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from swarm.config.experiment import ArenaSettings, Role
+from swarm.logs.ending import Ending, ending_of
 from swarm.logs.reader import LogError, LogReader, open_log
 
 UNKNOWN = "unknown"
@@ -34,6 +35,7 @@ class LogIdentity:
     learners: frozenset[str]
     cell_m: float
     """The side of a cell of the grids."""
+    ending: Ending = field(default_factory=Ending)
 
     def condition(self, robot: str) -> str:
         """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""
@@ -46,9 +48,18 @@ class LogIdentity:
 
 
 def identify(path: Path) -> LogIdentity:
-    """Read a log's metadata; LogError if it is no log of a run."""
+    """Read a log's metadata; LogError if it is no log of a run, or not of a single one."""
     reader = LogReader(path)
-    metadata = reader.read_metadata()
+    reader.read_metadata()
+    if reader.contradictions:
+        names = ", ".join(sorted(reader.contradictions))
+        raise LogError(path, f"does not say which run it holds: two metadata records that differ ({names})")
+    return identity_of(reader)
+
+
+def identity_of(reader: LogReader) -> LogIdentity:
+    """What the metadata say that have been read; of records that contradict each other the first counts."""
+    path, metadata = reader.path, reader.metadata
     run, robots = metadata.get("run", {}), metadata.get("robots", {})
     try:
         words = {robot: _role_and_condition(text) for robot, text in robots.items()}
@@ -63,6 +74,7 @@ def identify(path: Path) -> LogIdentity:
             conditions={robot: condition for robot, (_, condition) in words.items()},
             learners=frozenset(robot for robot, (role, _) in words.items() if role == Role.LEARNER.value),
             cell_m=_cell_m(metadata.get("experiment", {}).get("toml", "")),
+            ending=ending_of(metadata),
         )
     except (KeyError, ValueError) as error:
         reason = "does not say which run and trial it holds: was it recorded by swarm-server?"

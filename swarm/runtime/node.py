@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol, TypeVar
 
 from google.protobuf.message import Message
@@ -11,7 +11,8 @@ from swarm.clock import WallClock
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header
-from swarm.messages.topics import Topic
+from swarm.messages.topics import Delivery, Topic
+from swarm.runtime.account import ACCOUNT, pack_account
 from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Inbox, Publisher, Session
 
@@ -45,6 +46,11 @@ class Sequencer:
 
     def __init__(self) -> None:
         self._sequences: dict[str, int] = {}
+
+    @property
+    def last(self) -> Mapping[str, int]:
+        """Key -> the number of its last message."""
+        return self._sequences
 
     def following(self, key: str) -> int:
         """The number of the key's next message."""
@@ -80,6 +86,12 @@ class LiveNode:
         if key not in self._publishers:
             self._publishers[key] = self._session.publisher(key, topic.delivery)
         self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
+
+    def give_account(self, name: str) -> None:
+        """Tell the server, as the last thing, how many messages of each key this process has sent."""
+        header = Header(self._epoch, 1, self._clock.now_ns())
+        publisher = self._session.publisher(ACCOUNT.format(name=name), Delivery.EVERY)
+        publisher.put(pack_account(self._sequencer.last), attachment=header.pack())
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):

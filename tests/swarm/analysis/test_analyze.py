@@ -249,7 +249,7 @@ def test_health_counts_gaps_duplicates_restarts_and_rates(tmp_path: Path) -> Non
     health = table(analyzed(tmp_path / "log.mcap"), "health").filter(key="robot/loner/command")
     first, second = health.rows(named=True)
     assert (first["first_sequence"], first["last_sequence"], first["messages"]) == (2, 10, 6)
-    assert (first["missing"], first["gaps"]) == (4, 2)
+    assert (first["missing"], first["gaps"]) == (5, 3)
     assert (first["duplicates"], first["out_of_order"]) == (1, 1)
     assert math.isclose(first["seen_hz"], 10)
     assert first["declared_hz"] == 10

@@ -43,16 +43,16 @@ def test_lost_learning_events_duplicates_and_bad_messages_are_faults(log: SmallL
         log.add("robot/loner/move", pb.Move(number=sequence), sequence=sequence)
     log.add("robot/loner/pose", b"\xff")
     assert check_log(log.close()).faults == [
-        "robot/loner/move: 2 messages missing",
         "robot/loner/move: 1 duplicates",
         "robot/loner/pose: 1 messages that cannot be decoded",
+        "robot/loner/move: 2 messages missing",
     ]
 
 
 def test_lost_states_and_restarts_are_remarks(log: SmallLog) -> None:
     for sequence in (1, 2, 4):
-        log.add("robot/loner/pose", pb.Pose(), sequence=sequence)
-    log.add("robot/loner/pose", pb.Pose(), epoch=2)
+        log.add("robot/loner/pose", pb.Pose(x_m=1.0), sequence=sequence)
+    log.add("robot/loner/pose", pb.Pose(x_m=1.0), epoch=2)
     found = check_log(log.close())
     assert found.sound
     assert found.remarks == ["robot/loner/pose: 1 messages missing", "loner: restarted during the trial"]
