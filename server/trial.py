@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -13,6 +14,8 @@ from server.recording.recorder import Recorder
 from swarm.logs.ending import COMPLETE
 from swarm.messages import swarm_pb2 as pb
 
+SIGNALLED = 128
+"""A process that leaves on a signal has this code and the signal's number."""
 BATCHES_AFTER_THE_END = 3
 """So many more, for the robots' last words."""
 
@@ -106,7 +109,14 @@ class Trial:
 
     def _note_end(self, error: BaseException) -> None:
         """The reason is the log's last message, and stands in its last record."""
-        text = str(error) or type(error).__name__
+        text = _reason(error)
         self._conductor.event("interrupted", text[:500], pb.Event.ERROR)
         self._recorder.write(self._hub.unsent())
         self._recorder.end("interrupted", text[:500], self._hub.accounts())
+
+
+def _reason(error: BaseException) -> str:
+    """In words, also for a process that leaves by itself or on a signal."""
+    if isinstance(error, SystemExit) and isinstance(error.code, int) and error.code > SIGNALLED:
+        return f"the server was ended by {signal.Signals(error.code - SIGNALLED).name}"
+    return str(error) or type(error).__name__

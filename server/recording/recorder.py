@@ -62,6 +62,7 @@ class Recorder:
         self._last: dict[Sender, int] = {}
         self._views: dict[str, int] = {}
         self._add_metadata(metadata)
+        self._file.flush()
 
     def write(self, batch: Batch) -> None:
         """Append a batch; its order is the file's order."""
@@ -89,6 +90,7 @@ class Recorder:
         channel = self._channels[topic, 0]
         assert channel is not None
         self._writer.add_message(channel, t_ns, message.SerializeToString(deterministic=True), t_ns, number)
+        self.messages += 1
 
     def flush(self) -> None:
         """End the chunk and hand everything to the operating system: a killed server loses none of it."""

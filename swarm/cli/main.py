@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from io import TextIOWrapper
 
 from swarm.cli.output import require_extra
 from swarm.errors import guarded
@@ -16,5 +17,7 @@ def _run() -> None:
 
 
 def main() -> None:
-    """Entry point of the `swarm` command."""
+    """Entry point of the `swarm` command. A name that is not UTF-8 is printed with escapes."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
     sys.exit(guarded(_run))

@@ -65,7 +65,7 @@ def _curves_of(runs: list[Path]) -> dict[str, Curves]:
     require_extra("lab", "mcap")
     with tempfile.TemporaryDirectory() as folder:
         tables = read_logs(find_inputs(runs).logs, Path(folder), False, lambda _: None).tables
-        return run_curves(pl.read_parquet(tables["best_paths"])).curves
+        return run_curves(pl.read_parquet(tables["best_paths"], glob=False)).curves
 
 
 def trials_command(

@@ -17,6 +17,7 @@ import polars as pl
 
 from swarm.files import printable
 from swarm.logs.completeness import HealthTable, health_totals
+from swarm.logs.ending import COMPLETE
 from swarm.logs.identity import LogIdentity, identity_of
 from swarm.logs.reader import LogReader, Part
 from swarm.logs.tables import is_tabled, rows
@@ -123,7 +124,9 @@ def check_log(path: Path) -> LogCheck:
     found = contents.health.frame()
     lacking = [text for text in (identity.ending.fault,) if text]
     missing = dict(found.group_by("key").agg(pl.col("missing").sum()).iter_rows())
-    lacking += [*_missing(found), *contents.swallowed_moves(missing), *_unaccounted(found)]
+    lacking += [*_missing(found), *contents.swallowed_moves(missing)]
+    if identity.ending.state == COMPLETE:
+        lacking += _unaccounted(found)
     damage = [*_damage(reader), *contents.damage(), *_bad_messages(found)]
     indexed = reader.recorded_messages is not None
     return LogCheck(path, reader.messages, indexed, damage, lacking, _remarks(found))

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import polars as pl
 
-from swarm.logs.ending import Sender
+from swarm.logs.ending import COMPLETE, Sender
 from swarm.logs.identity import LogIdentity
 from swarm.logs.reader import LogChannel, Part
 from swarm.messages.topics import topic_of
@@ -89,7 +89,7 @@ class HealthTable:
         sent = self._sent.get((channel.key, channel.epoch))
         none = [np.empty(0, dtype=np.uint32)]
         return {
-            "log": str(self.identity.path),
+            "log": self.identity.name,
             "seed": self.identity.seed,
             "trial": self.identity.trial,
             "key": channel.key,
@@ -128,6 +128,20 @@ def _rates(publish_t_ns: npt.NDArray[np.int64]) -> dict[str, float | None]:
         return {"seen_hz": None, "longest_silence_s": None}
     silence_s = float(np.diff(np.sort(publish_t_ns)).max()) * _S_PER_NS
     return {"seen_hz": (len(publish_t_ns) - 1) / lasted_s, "longest_silence_s": silence_s}
+
+
+def log_state(health: pl.DataFrame, identity: LogIdentity, damaged: bool) -> str:
+    """In a word: damaged, recovered, interrupted, unfinished, incomplete, or complete."""
+    ending = identity.ending
+    if damaged:
+        return "damaged"
+    if ending.lost:
+        return "recovered"
+    if ending.state != COMPLETE:
+        return ending.state or "unfinished"
+    events = health.filter((pl.col("log") == identity.name) & (pl.col("delivery") == "every"))
+    accounted = events["missing"].sum() == 0 and events["sent"].null_count() == 0
+    return "complete" if accounted else "incomplete"
 
 
 LOW_SHARE = 0.5

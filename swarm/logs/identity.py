@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from swarm.config.experiment import ArenaSettings, Role
+from swarm.files import printable
 from swarm.logs.ending import Ending, ending_of
 from swarm.logs.reader import LogError, LogReader, open_log
 
@@ -36,6 +37,11 @@ class LogIdentity:
     cell_m: float
     """The side of a cell of the grids."""
     ending: Ending = field(default_factory=Ending)
+
+    @property
+    def name(self) -> str:
+        """The path as tables, reports and JSON have it."""
+        return printable(self.path)
 
     def condition(self, robot: str) -> str:
         """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""

@@ -69,7 +69,8 @@ class TableFiles:
         parts = self._parts.pop(name, [])
         if parts:
             rest = pl.concat(self._frames.pop(name, []) or [empty_table(name)])
-            pl.concat([*map(pl.scan_parquet, parts), rest.lazy()]).sink_parquet(beside)
+            spilled = [pl.scan_parquet(part, glob=False) for part in parts]
+            pl.concat([*spilled, rest.lazy()]).sink_parquet(beside)
         else:
             pl.concat([empty_table(name), *self._frames.pop(name, [])]).write_parquet(beside)
         beside.replace(path)
@@ -125,7 +126,7 @@ def read_logs(
 
 def _without_empty(tables: dict[str, Path], names: Sequence[str]) -> dict[str, Path]:
     """Remove some tables if all of them are without rows."""
-    if any(pl.scan_parquet(tables[name]).select(pl.len()).collect().item() for name in names):
+    if any(pl.scan_parquet(tables[name], glob=False).select(pl.len()).collect().item() for name in names):
         return tables
     for name in names:
         tables[name].unlink()

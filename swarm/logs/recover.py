@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,7 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Message, Metadata, Schema
 from small_mcap import CompressionType, McapWriter
 
+from swarm.errors import RunFailedError
 from swarm.files import new_file
 from swarm.logs.ending import RECOVERED
 from swarm.logs.mcap_chunks import places
@@ -32,23 +34,33 @@ class Recovery:
 def recover_log(damaged: Path, whole: Path) -> Recovery:
     """Copy every record that can be read; of a damaged chunk nothing is copied.
 
-    LogError for what is no log or holds no message that can be read, UserError if `whole` cannot be made.
+    LogError for what is no log or holds no message that can be read, UserError if `whole` cannot be made,
+    RunFailedError if there is no room for it.
     """
-    with open_log(damaged) as source, new_file(whole) as target:
-        copy = _Copy(target)
+    with open_log(damaged) as source:
+        target = new_file(whole)
         try:
-            copy.take_all(source)
-            copy.finish()
-        except FramingError as error:
+            with target:
+                return _recovered(damaged, source, target)
+        except BaseException as error:
             whole.unlink()
-            raise LogError(damaged, str(error)) from error
-        except BaseException:
-            whole.unlink()
+            if isinstance(error, OSError):
+                raise RunFailedError(f"{whole}: cannot be written ({error.strerror})") from error
             raise
+
+
+def _recovered(damaged: Path, source: BinaryIO, target: BinaryIO) -> Recovery:
+    copy = _Copy(target)
+    try:
+        copy.take_all(source)
+    except FramingError as error:
+        raise LogError(damaged, str(error)) from error
     if copy.messages == 0:
-        whole.unlink()
         reason = f": {copy.lost[0]}" if copy.lost else ""
         raise LogError(damaged, f"no message can be read from this log{reason}")
+    copy.finish()
+    target.flush()
+    os.fsync(target.fileno())
     return Recovery(copy.messages, copy.lost)
 
 
