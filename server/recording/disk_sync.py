@@ -16,6 +16,8 @@ class DiskSync:
         self._descriptor = descriptor
         self._period_s = period_s
         self._over = threading.Event()
+        self.synced = threading.Event()
+        """Set after the first time."""
         self.failure: OSError | None = None
         """Why the disk could not take the file."""
         self._thread = threading.Thread(target=self._run, name="disk-sync", daemon=True)
@@ -36,3 +38,4 @@ class DiskSync:
             os.fdatasync(self._descriptor)
         except OSError as error:
             self.failure = error
+        self.synced.set()
