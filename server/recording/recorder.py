@@ -15,16 +15,15 @@ from typing import Any
 
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from google.protobuf.message import Message
-from small_mcap import CompressionType, McapWriter
 
 from server.hubs.hub import Batch
 from server.recording.disk_sync import DiskSync
 from swarm.files import new_file
 from swarm.logs.ending import Sender, ending_records
+from swarm.logs.mcap_writer import LogWriter
 from swarm.messages.topics import topic_of
 from swarm.messages.validation import MAX_PAYLOAD_BYTES
 
-CHUNK_BYTES = 256 * 1024
 LAID_DOWN_EVERY_S = 0.2
 """Real seconds of messages that a killed server loses at most; to lay a chunk down takes about 2 ms."""
 MAX_MESSAGE_BYTES = 16 * MAX_PAYLOAD_BYTES
@@ -55,8 +54,7 @@ class Recorder:
         """Keys with messages above MAX_MESSAGE_BYTES, and the number of them that were left out."""
         self.unknown_keys: dict[str, int] = {}
         """Keys that the key table does not know, with the number of messages that were left out."""
-        self._writer = McapWriter(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
-        self._writer.start(profile="", library="swarm-runtime")
+        self._writer = LogWriter(self._file)
         self._schemas: dict[str, int] = {}
         self._channels: dict[Sender, int | None] = {}
         self._last: dict[Sender, int] = {}
@@ -94,12 +92,7 @@ class Recorder:
 
     def flush(self) -> None:
         """End the chunk and hand everything to the operating system: a killed server loses none of it."""
-        builder = self._writer.chunk_builder
-        assert builder is not None
-        chunk = builder.finalize()
-        if chunk is not None:
-            builder.reset()
-            self._writer.add_chunk(*chunk)
+        self._writer.end_chunk()
         self._hand_over()
 
     def end(self, state: str, reason: str, accounts: Mapping[Sender, int] | None) -> None:
@@ -125,16 +118,7 @@ class Recorder:
     def _lay_down(self) -> None:
         """Put the open chunk where it will stand, as it is now; what is written next overwrites it."""
         self._due_s = self._monotonic_s() + LAID_DOWN_EVERY_S
-        builder = self._writer.chunk_builder
-        assert builder is not None
-        chunk = builder.finalize()
-        if chunk is None:
-            return
-        place = self._file.tell()
-        chunk[0].write_record_to(self._file)
-        self._laid_down_end = self._file.tell()
-        self._file.flush()
-        self._file.seek(place)
+        self._laid_down_end = self._writer.lay_down()
 
     def _hand_over(self) -> None:
         """Leave nothing behind the last record: a chunk that was laid down may have been packed worse."""

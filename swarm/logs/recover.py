@@ -10,7 +10,6 @@ from typing import BinaryIO
 
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Message, Metadata, Schema
-from small_mcap import CompressionType, McapWriter
 
 from swarm.errors import RunFailedError
 from swarm.files import new_file
@@ -18,9 +17,8 @@ from swarm.logs.ending import RECOVERED
 from swarm.logs.mcap_chunks import places
 from swarm.logs.mcap_records import BROKEN, BrokenRecordError, FramingError, Record, decoded
 from swarm.logs.mcap_walk import Walk
+from swarm.logs.mcap_writer import LogWriter
 from swarm.logs.reader import Damage, Definitions, LogError, open_log
-
-CHUNK_BYTES = 256 * 1024
 
 
 @dataclass(frozen=True)
@@ -72,8 +70,7 @@ class _Copy:
         self.lost: list[Damage] = []
         self._definitions = Definitions()
         self._metadata: dict[str, list[Metadata]] = {}
-        self._writer = McapWriter(target, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
-        self._writer.start(profile="", library="swarm-runtime")
+        self._writer = LogWriter(target)
 
     def take_all(self, source: BinaryIO) -> None:
         """Every record; FramingError for what is no log.

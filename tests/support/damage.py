@@ -50,6 +50,16 @@ def told(path: Path) -> Counter[Told]:
         return Counter((channel.topic, one.sequence, one.log_time, one.data) for _, channel, one in messages)
 
 
+def defined(path: Path) -> set[tuple[str, str, bytes]]:
+    """Topic, schema's name and schema of every channel, as the `mcap` package finds them."""
+    with path.open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    schemas = [summary.schemas[channel.schema_id] for channel in summary.channels.values()]
+    topics = [channel.topic for channel in summary.channels.values()]
+    return {(topic, schema.name, schema.data) for topic, schema in zip(topics, schemas, strict=True)}
+
+
 def stretches(path: Path) -> list[Stretch]:
     """The chunks of an undamaged log, as the `mcap` package finds them."""
     data = path.read_bytes()

@@ -63,7 +63,7 @@ def test_zenoh_is_imported_by_the_bus_alone() -> None:
 
 
 def test_mcap_is_imported_by_the_recorder_and_the_log_reader_alone() -> None:
-    assert importers("small_mcap") == {"server/recording/recorder.py", "swarm/logs/recover.py"}
+    assert importers("small_mcap") == {"swarm/logs/mcap_writer.py"}
     readers = importers("mcap")
     assert readers
     assert all(name.startswith("swarm/logs/") for name in readers)

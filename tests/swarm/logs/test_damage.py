@@ -11,7 +11,7 @@ from swarm.logs.check import check_log
 from swarm.logs.reader import LogError
 from swarm.logs.recover import recover_log
 from swarm.messages import swarm_pb2 as pb
-from tests.support.damage import KINDS, stretches, surviving, told, wounds
+from tests.support.damage import KINDS, defined, stretches, surviving, told, wounds
 from tests.support.small_logs import SmallLog
 
 EACH = 12
@@ -36,6 +36,7 @@ def test_damage_shows_and_costs_only_what_it_touches(log: Path, tmp_path: Path, 
     chunks, written = stretches(log), told(log)
     assert sum(len(chunk.messages) for chunk in chunks) == written.total() == 120
     assert check_log(log).sound
+    definitions = defined(log)
     broken, whole = tmp_path / "broken.mcap", tmp_path / "whole.mcap"
     for wound in wounds(log, chunks, EACH, seed=1):
         if wound.kind != kind or wound.data == log.read_bytes():
@@ -52,6 +53,7 @@ def test_damage_shows_and_costs_only_what_it_touches(log: Path, tmp_path: Path, 
             assert not expected or wound.begin < 8, place
             continue
         assert expected <= told(whole) <= written, place
+        assert defined(whole) <= definitions, "no key and no schema is invented"
         assert recovery.lost, place
         assert all(damage.reason for damage in recovery.lost)
         assert broken.read_bytes() == wound.data
