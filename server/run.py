@@ -1,4 +1,4 @@
-"""A run: its trials one after the other, each on a stage of its own."""
+"""A run: its trials one after the other, each in an environment of its own."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from server.conductor.conductor import Conductor
-from server.processes.environment import SetStage
+from server.processes.environment import Environment, TrialPlan
 from server.progress import RunProgress
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
@@ -30,7 +30,7 @@ class Run:
     experiment: Experiment
     file: Path
     directory: RunDirectory
-    set_stage: SetStage
+    environment: Environment
     trials: Sequence[int]
     """Their numbers, in order."""
     progress: RunProgress
@@ -56,13 +56,15 @@ class Run:
 
     def _trial(self, trial: int, file: Path) -> None:
         """Also of a trial that is interrupted it is known how far it came."""
-        with self.set_stage(trial, file, self.directory.output(trial)) as stage:
-            conductor = Conductor(self.experiment, trial, stage.hub.publish, stage.carrier)
+        plan = TrialPlan(trial, file, self.directory.output(trial))
+        with self.environment(plan) as environment:
+            reporter = environment.reporter
+            conductor = Conductor(self.experiment, trial, reporter, environment.carrier)
             recorder = Recorder(
                 self.directory.log(trial), metadata(self.experiment, file, trial, self.versions)
             )
-            health = Health(conductor.event)
-            played = Trial(stage, conductor, recorder, health, Views(self.experiment), self.progress.show)
+            health, views = Health(reporter), Views(self.experiment)
+            played = Trial(environment, conductor, recorder, health, views, self.progress.show)
             try:
                 played.run()
             finally:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from server.conductor.conductor import Conductor
-from server.processes.environment import Stage
+from server.processes.environment import TrialEnvironment
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
 from server.recording.recorder import Recorder
@@ -17,7 +17,7 @@ from swarm.messages import swarm_pb2 as pb
 SIGNALLED = 128
 """A process that leaves on a signal has this code and the signal's number."""
 BATCHES_AFTER_THE_END = 3
-"""So many more, for the robots' last words."""
+"""The end reaches the robots two exchanges later; one more brings their last words."""
 
 
 @dataclass(frozen=True)
@@ -39,15 +39,15 @@ class Trial:
 
     def __init__(
         self,
-        stage: Stage,
+        environment: TrialEnvironment,
         conductor: Conductor,
         recorder: Recorder,
         health: Health,
         views: Views,
         show: Callable[[Conductor, float], None],
     ) -> None:
-        self._hub = stage.hub
-        self._stage = stage
+        self._hub = environment.hub
+        self._environment = environment
         self._conductor = conductor
         self._recorder = recorder
         self._health = health
@@ -101,8 +101,8 @@ class Trial:
         self._began_ns = batch.t_ns if self._began_ns is None else self._began_ns
         self._t_ns = batch.t_ns
         self._batches += 1
-        if self._batches % self._stage.batches_between_flushes == 0:
-            if not self._stage.waits_for_people:
+        if self._batches % self._environment.batches_between_flushes == 0:
+            if not self._environment.waits_for_people:
                 self._conductor.check_progress(batch.t_ns)
             self._recorder.flush()
             self._show(self._conductor, self._t_ns / 1e9)
@@ -110,7 +110,7 @@ class Trial:
     def _note_end(self, error: BaseException) -> None:
         """The reason is the log's last message, and stands in its last record."""
         text = _reason(error)
-        self._conductor.event("interrupted", text[:500], pb.Event.ERROR)
+        self._environment.reporter.event("interrupted", text[:500], pb.Event.ERROR)
         self._recorder.write(self._hub.unsent())
         self._recorder.end("interrupted", text[:500], self._hub.accounts())
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import csv
+import json
 import os
-from collections.abc import Callable
-from io import BufferedWriter
+from collections.abc import Callable, Iterable, Sequence
+from io import BufferedWriter, TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from swarm.errors import RunFailedError, UserError
 
 if TYPE_CHECKING:
-    pass
+    import polars as pl
+    from matplotlib.figure import Figure
 
 
 def printable(path: Path) -> str:
@@ -29,7 +32,16 @@ def new_file(path: Path) -> BufferedWriter:
         raise UserError(f"{path}: cannot be written ({error.strerror}); choose another --out") from error
 
 
-def write_whole(path: Path, write: Callable[[Path], object]) -> None:
+def new_csv(path: Path, told: Iterable[str], columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+    """A new file of rows under `columns`, after comment lines that say how it was made."""
+    with new_file(path) as file, TextIOWrapper(file, encoding="utf-8", newline="") as text:
+        text.writelines(f"# {line}\n" for line in told)
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(rows)
+
+
+def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
     """Call `write` with a temporary name and give the file its own name once it is on the disk."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
@@ -41,3 +53,34 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
         raise RunFailedError(f"{path} cannot be written ({error}); what was finished is kept") from error
     finally:
         temporary.unlink(missing_ok=True)
+    return path
+
+
+def write_text(text: str, path: Path) -> Path:
+    """A text, whole; in it names of files that are not UTF-8 are written with escapes."""
+    data = text.encode("utf-8", "backslashreplace")
+    return write_whole(path, lambda temporary: temporary.write_bytes(data))
+
+
+def write_json(content: Any, path: Path) -> Path:
+    """Plain data, whole; ValueError for a number that JSON does not know."""
+    return write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", path)
+
+
+def write_table(table: pl.DataFrame, path: Path) -> Path:
+    """A table, whole: as text if the name ends in .csv, else as Parquet."""
+    return write_whole(path, table.write_csv if path.suffix == ".csv" else table.write_parquet)
+
+
+PICTURE_DPI = 150
+"""A figure of 8 inches is 1,200 pixels wide: sharp in a report, and small."""
+
+
+def write_png(figure: Figure, path: Path) -> Path:
+    """A picture, whole, and without date and version: the same results give the same bytes."""
+    return write_whole(
+        path,
+        lambda temporary: figure.savefig(
+            temporary, format="png", dpi=PICTURE_DPI, metadata={"Software": None}
+        ),
+    )

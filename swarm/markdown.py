@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+BAR = "\\|"
+"""A bar inside a cell, which would else end it."""
+
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """A table of texts."""
     lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(cell.replace('|', '/') for cell in line)} |" for line in lines)
+    return "\n".join(f"| {' | '.join(cell.replace('|', BAR) for cell in line)} |" for line in lines)
 
 
 def text_number(value: float | None, digits: int = 1) -> str:
     """A number as a person reads it; an en dash for none."""
     return "–" if value is None else f"{value:,.{digits}f}"
+
+
+def counted(count: int, name: str) -> str:
+    """ "1 visit", "1,200 visits"."""
+    return f"{count:,} {name}{'' if count == 1 else 's'}"

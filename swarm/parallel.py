@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import multiprocessing
+import os
 import signal
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
@@ -12,8 +13,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from swarm.errors import RunFailedError, UserError
+from swarm.extras import require_extra
+from swarm.interpreter import safe_path
 
 SCHEDULERS = ("processes", "dask")
+
+
+def available_cores() -> list[int]:
+    """The cores that this process may use; all of the machine where the system does not say."""
+    if hasattr(os, "sched_getaffinity"):
+        return sorted(os.sched_getaffinity(0))
+    return list(range(os.cpu_count() or 1))
 
 
 @dataclass(frozen=True)
@@ -34,7 +44,7 @@ def workers(scheduler: str, jobs: int) -> Iterator[Workers]:
             yield Workers(1, _in_this_process)
             return
         try:
-            with _processes(jobs) as pool:
+            with safe_path(), _processes(jobs) as pool:
                 yield Workers(jobs, _through(pool))
         except BrokenExecutor as error:
             raise RunFailedError(
@@ -42,7 +52,7 @@ def workers(scheduler: str, jobs: int) -> Iterator[Workers]:
                 "perhaps with fewer --jobs"
             ) from error
     else:
-        with _dask(scheduler, jobs) as dask_workers:
+        with safe_path(), _dask(scheduler, jobs) as dask_workers:
             yield dask_workers
 
 
@@ -83,8 +93,7 @@ def _leave_interrupts() -> None:
 
 @contextmanager
 def _dask(scheduler: str, jobs: int) -> Iterator[Workers]:
-    if importlib.util.find_spec("distributed") is None:
-        raise UserError("Dask is missing: install it with pip install 'swarm-runtime[cluster]'")
+    require_extra("cluster", "dask", "distributed")
     with _dask_client(scheduler, jobs) as client:
         count = max(1, sum(client.nthreads().values()))
         yield Workers(count, _through(client.get_executor(pure=False)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from server.conductor.carrier import Publish
+from server.reporter import Reporter
 from swarm.config.experiment import Experiment
 from swarm.geometry import Compartment
 from swarm.messages import swarm_pb2 as pb
@@ -12,14 +12,15 @@ from swarm.messages import topics
 from swarm.runtime.subscription import Received
 
 LEDGE_M = 0.02
+"""A robot on its compartment's border is still in it; far less than a cell, so no neighbour is."""
 
 
 class CameraViews:
     """Relays light, not messages: an observer receives a view under its own key, never another's pose."""
 
-    def __init__(self, experiment: Experiment, publish: Publish) -> None:
+    def __init__(self, experiment: Experiment, reporter: Reporter) -> None:
         self._experiment = experiment
-        self._publish = publish
+        self._reporter = reporter
         self._truths: dict[str, pb.Truth] = {}
         self._t_ns = 0
 
@@ -29,7 +30,7 @@ class CameraViews:
             self._truths[received.robot] = received.message
             self._t_ns = received.header.t_ns
         for observer, demonstrator in watching.items():
-            self._publish(topics.VIEW, self._view(observer, demonstrator), observer)
+            self._reporter.publish(topics.VIEW, self._view(observer, demonstrator), observer)
 
     def _view(self, observer: str, demonstrator: str) -> pb.View:
         room = self._experiment.compartment(self._experiment.robot_named(demonstrator))

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Protocol
 
-from google.protobuf.message import Message
-
+from server.reporter import Reporter
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.messages.topics import Topic
-
-Publish = Callable[[Topic[Any], Message, str], None]
 
 
 class Carrier(Protocol):
@@ -25,22 +21,22 @@ class Carrier(Protocol):
 class SimulatedCarrier:
     """Moves a simulated robot at once."""
 
-    def __init__(self, publish: Publish) -> None:
-        self._publish = publish
+    def __init__(self, reporter: Reporter) -> None:
+        self._reporter = reporter
 
     def relocate(self, robot: str, to: Pose, why: str) -> None:  # noqa: ARG002
-        self._publish(topics.CARRY, pb.Carry(x_m=to.x_m, y_m=to.y_m, theta_rad=to.theta_rad), robot)
+        self._reporter.publish(topics.CARRY, pb.Carry(x_m=to.x_m, y_m=to.y_m, theta_rad=to.theta_rad), robot)
 
 
 class Operator:
     """Asks a person, on the terminal and in the log."""
 
-    def __init__(self, publish: Publish, ask: Callable[[str], None]) -> None:
-        self._publish = publish
+    def __init__(self, reporter: Reporter, ask: Callable[[str], None]) -> None:
+        self._reporter = reporter
         self._ask = ask
 
     def relocate(self, robot: str, to: Pose, why: str) -> None:
         place = f"x {to.x_m:.2f} m, y {to.y_m:.2f} m, heading {to.theta_rad:.2f} rad"
         text = f"please carry {robot} to {place}: {why}"
         self._ask(text)
-        self._publish(topics.SERVER_EVENT, pb.Event(level=pb.Event.WARNING, name="carry", text=text), "")
+        self._reporter.event("carry", text, pb.Event.WARNING)

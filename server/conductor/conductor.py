@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from server.conductor.camera_views import CameraViews
-from server.conductor.carrier import Carrier, Publish
+from server.conductor.carrier import Carrier
 from server.conductor.copy_errors import CopyErrors
 from server.conductor.visits import Visits
 from server.hubs.hub import Batch
+from server.reporter import Reporter
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
 from swarm.errors import RunFailedError
@@ -16,16 +17,18 @@ from swarm.messages import topics
 from swarm.runtime.subscription import Received, Subscription, Subscriptions
 
 RUN_STATE_PERIOD_NS = NS_PER_S
+"""A robot that has not heard it for 5 s waits; so four may be lost."""
 STUCK_AFTER_NS = 600 * NS_PER_S
+"""Twenty times the default visit of 30 s, in which a robot makes no move."""
 
 
 class Conductor:
     """Follows a trial from what is on the wire, and speaks to the robots by the same wire."""
 
-    def __init__(self, experiment: Experiment, trial: int, publish: Publish, carrier: Carrier) -> None:
+    def __init__(self, experiment: Experiment, trial: int, reporter: Reporter, carrier: Carrier) -> None:
         self._experiment = experiment
         self._trial = trial
-        self._publish = publish
+        self._reporter = reporter
         self._moves = Subscription(topics.MOVE)
         self._best_paths = Subscription(topics.BEST_PATH)
         self._paths = Subscription(topics.PATH)
@@ -36,10 +39,10 @@ class Conductor:
         self._subscriptions = Subscriptions(heard)
         self._feeds_while_watching = Subscriptions((*heard, self._truths))
         self._goal = Grid(experiment.arena.columns, experiment.arena.rows).goal
-        self._visits = Visits(experiment, publish, carrier)
-        self._camera_views = CameraViews(experiment, publish)
+        self._visits = Visits(experiment, reporter, carrier)
+        self._camera_views = CameraViews(experiment, reporter)
         watched_by = {robot.id: robot.watches for robot in experiment.learners if robot.watches}
-        self._copy_errors = CopyErrors(watched_by, publish)
+        self._copy_errors = CopyErrors(watched_by, reporter)
         self._state_due_ns = 0
         self._moved_ns = 0
         self._ending = False
@@ -106,8 +109,4 @@ class Conductor:
     def announce(self, phase: pb.RunState.Phase.ValueType) -> None:
         """Tell everyone the phase of the trial."""
         state = pb.RunState(phase=phase, trial=self._trial, experiment=self._experiment.run.name)
-        self._publish(topics.RUN_STATE, state, "")
-
-    def event(self, name: str, text: str, level: pb.Event.Level.ValueType = pb.Event.INFO) -> None:
-        """Put something that a person should know into the log."""
-        self._publish(topics.SERVER_EVENT, pb.Event(level=level, name=name, text=text), "")
+        self._reporter.publish(topics.RUN_STATE, state)

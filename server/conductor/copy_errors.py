@@ -8,14 +8,16 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
-from server.conductor.carrier import Publish
+from server.reporter import Reporter
 from swarm.clock import NS_PER_S
 from swarm.learning.alignment import edit_distance
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 
 MOVES_KEPT = 1000
+"""More than the longest visit, of 600 s, has room for: no move takes less than a second."""
 LAST_MOVE_REPORTED_NS = 5 * NS_PER_S
+"""A move is reported when it ends: two of the mean move of 2.4 s. Nobody waits for this."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +31,9 @@ class RealMove:
 class CopyErrors:
     """Keeps the demonstrators' moves and judges every observation."""
 
-    def __init__(self, watched_by: dict[str, str], publish: Publish) -> None:
+    def __init__(self, watched_by: dict[str, str], reporter: Reporter) -> None:
         self._watched_by = watched_by
-        self._publish = publish
+        self._reporter = reporter
         self._real = {robot: deque[RealMove](maxlen=MOVES_KEPT) for robot in watched_by.values()}
         self._observations: dict[str, pb.Observation] = {}
         self._to_judge: deque[tuple[int, str, pb.Visit, pb.Observation]] = deque()
@@ -74,4 +76,4 @@ class CopyErrors:
             copied_moves=copied,
             edit_distance=edit_distance(copied, real),
         )
-        self._publish(topics.COPY_ERROR, message, robot)
+        self._reporter.publish(topics.COPY_ERROR, message, robot)

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from server.conductor.carrier import Carrier, Publish
+from server.conductor.carrier import Carrier
+from server.reporter import Reporter
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment, RobotSettings
 from swarm.geometry import Pose
@@ -15,6 +16,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 
 REPEAT_NS = 10 * NS_PER_S
+"""Matters only to an agent that restarted within a visit, which stands for so long at most."""
 
 
 @dataclass
@@ -35,9 +37,9 @@ class VisitRecord:
 class Visits:
     """Orders visits and has the robots carried."""
 
-    def __init__(self, experiment: Experiment, publish: Publish, carrier: Carrier) -> None:
+    def __init__(self, experiment: Experiment, reporter: Reporter, carrier: Carrier) -> None:
         self._experiment = experiment
-        self._publish = publish
+        self._reporter = reporter
         self._carrier = carrier
         self._records = {robot.id: VisitRecord(robot) for robot in experiment.learners if robot.watches}
         for record in self._records.values():
@@ -106,7 +108,7 @@ class Visits:
         order = pb.Order(
             kind=kind, visit=record.begun, x_m=place.x_m, y_m=place.y_m, theta_rad=place.theta_rad
         )
-        self._publish(topics.ORDER, order, record.robot.id)
+        self._reporter.publish(topics.ORDER, order, record.robot.id)
 
     def _demonstrator(self, record: VisitRecord) -> RobotSettings:
         return self._experiment.robot_named(record.robot.watches)

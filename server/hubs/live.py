@@ -13,11 +13,11 @@ from swarm.clock import WallClock
 from swarm.config.experiment import Experiment
 from swarm.logs.ending import Sender
 from swarm.messages.header import Header, Item
-from swarm.messages.topics import Delivery, Topic, topic_of
-from swarm.runtime.account import EVERY_ACCOUNT, unpack_account
+from swarm.messages.topics import ACCOUNT, Delivery, Topic, topic_of
+from swarm.runtime.account import unpack_account
 from swarm.runtime.liveliness import present
-from swarm.runtime.node import Sequencer
-from swarm.runtime.zenoh_session import Publisher, Session, WireSample
+from swarm.runtime.node import LivePublisher
+from swarm.runtime.zenoh_session import Session, WireSample
 
 M = TypeVar("M", bound=Message)
 
@@ -40,17 +40,15 @@ class LiveHub:
         self._session = session
         self._clock = clock
         self._ticks: Iterator[int] = clock.ticks(experiment.simulation.tick_s)
-        self._epoch = time.time_ns()
         self._robots = [robot.id for robot in experiment.robot]
         self._check = check
         self._warn = warn
         self._inboxes = [session.inbox(key, Delivery.EVERY) for key in EVERYTHING]
-        self._closing = session.inbox(EVERY_ACCOUNT, Delivery.EVERY)
+        self._live = LivePublisher(session, clock, epoch=time.time_ns())
+        self._closing = session.inbox(ACCOUNT.format(name="*"), Delivery.EVERY)
         self._accounts: dict[Sender, int] = {}
         self._gone: set[int] = set()
         """Epochs of the processes that have given their closing account."""
-        self._publishers: dict[str, Publisher] = {}
-        self._sequencer = Sequencer()
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
 
@@ -67,11 +65,7 @@ class LiveHub:
                 self._warn(f"waiting for {', '.join(missing)}")
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
-        key = topic.key(robot)
-        header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
-        if key not in self._publishers:
-            self._publishers[key] = self._session.publisher(key, topic.delivery)
-        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
+        self._live.publish(topic, message, robot)
 
     def advance(self) -> None:
         """In real time the processes need no leave."""
@@ -99,7 +93,7 @@ class LiveHub:
 
     def accounts(self) -> Mapping[Sender, int]:
         """What the processes that have left said, and what the server itself has sent."""
-        own = {(key, self._epoch): last for key, last in self._sequencer.last.items()}
+        own = {(key, self._live.epoch): last for key, last in self._live.sent.items()}
         return {sender: last for sender, last in (self._accounts | own).items() if _is_logged(sender[0])}
 
     def _hear_accounts(self) -> None:

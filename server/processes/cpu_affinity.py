@@ -19,11 +19,6 @@ CAN_CHOOSE = hasattr(os, "sched_setaffinity")
 """Linux can; elsewhere a lockstep runs as the system likes, and slower."""
 
 
-def available_cores() -> list[int]:
-    """The cores that this process may use."""
-    return sorted(os.sched_getaffinity(0)) if CAN_CHOOSE else list(range(os.cpu_count() or 1))
-
-
 def keep(pid: int, core: int) -> None:
     """A process keeps to a core from now on."""
     if CAN_CHOOSE:

@@ -14,55 +14,69 @@ from server.conductor.carrier import Carrier, Operator, SimulatedCarrier
 from server.hubs.hub import Hub
 from server.hubs.live import LiveHub
 from server.hubs.lockstep import LockstepHub
-from server.processes.cpu_affinity import available_cores, keeping_to, spread
+from server.processes.cpu_affinity import keeping_to, spread
 from server.processes.run_table import Pace, run_table
 from server.processes.supervisor import ProcessSpec, Supervisor
+from server.reporter import Reporter
 from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import Experiment
+from swarm.parallel import available_cores
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import patient
 from swarm.runtime.zenoh_session import Session, SessionSettings
 
 LOCKSTEP_BATCHES_BETWEEN_FLUSHES = 1000
+"""Of one tick each: a third of a second at 300 times real time. More often makes more, smaller chunks."""
 LIVE_FLUSH_S = 0.5
 """Real seconds of messages that a killed server may lose."""
 
 
 @dataclass(frozen=True)
-class Stage:
-    """Where the messages come together, who carries robots, and how often the log is flushed."""
+class TrialPlan:
+    """Which trial is to be played: its number, the experiment's file, where its processes print to."""
+
+    trial: int
+    file: Path
+    output: Path
+
+
+@dataclass(frozen=True)
+class TrialEnvironment:
+    """Where the messages come together, who speaks for the server, who carries robots, and how often the
+    log is flushed.
+    """
 
     hub: Hub
+    reporter: Reporter
     carrier: Carrier
     batches_between_flushes: int
     waits_for_people: bool = False
 
 
-SetStage = Callable[[int, Path, Path], AbstractContextManager[Stage]]
-"""Makes the stage of a trial from its number, the experiment's file, and a directory for output."""
+Environment = Callable[[TrialPlan], AbstractContextManager[TrialEnvironment]]
+"""`simulated` or `laboratory`, with all but the plan given."""
 
 Warn = Callable[[str], None]
 
 
-def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetStage:
+@contextmanager
+def simulated(
+    experiment: Experiment, speed: float | None, warn: Warn, plan: TrialPlan
+) -> Iterator[TrialEnvironment]:
     """Processes on this machine, in lockstep (`speed` None) or so many times as fast as life."""
-
-    @contextmanager
-    def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:
-        pace = Pace(speed is None, speed or 1.0, time.monotonic_ns())
-        cores = available_cores()
-        with (
-            socket_endpoint() as endpoint,
-            keeping_to(cores[0]) if pace.lockstep else nullcontext(),
-            Session(_hub_settings(endpoint, pace)) as session,
-        ):
-            specs = run_table(experiment, file, endpoint, trial, pace, output)
-            claim(session, _presence())
-            with Supervisor(specs, output, spread(len(specs), cores)) as supervisor:
-                hub, flush_every = _hub(experiment, session, pace, specs, supervisor.check, warn)
-                yield Stage(hub, SimulatedCarrier(hub.publish), flush_every)
-
-    return stage
+    pace = Pace(speed is None, speed or 1.0, time.monotonic_ns())
+    cores = available_cores()
+    with (
+        socket_endpoint() as endpoint,
+        keeping_to(cores[0]) if pace.lockstep else nullcontext(),
+        Session(_hub_settings(endpoint, pace)) as session,
+    ):
+        specs = run_table(experiment, plan.file, endpoint, plan.trial, pace, plan.output)
+        claim(session, _presence())
+        with Supervisor(specs, plan.output, spread(len(specs), cores)) as supervisor:
+            hub, flush_every = _hub(experiment, session, pace, specs, supervisor.check, warn)
+            reporter = Reporter(hub)
+            yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every)
 
 
 def _hub_settings(endpoint: str, pace: Pace) -> SessionSettings:
@@ -95,16 +109,19 @@ def socket_endpoint() -> Iterator[str]:
         yield f"unixsock-stream/{place}/hub"
 
 
-def laboratory(experiment: Experiment, session: Session, warn: Warn) -> SetStage:
+@contextmanager
+def laboratory(
+    experiment: Experiment,
+    session: Session,
+    warn: Warn,
+    plan: TrialPlan,  # noqa: ARG001
+) -> Iterator[TrialEnvironment]:
     """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
-
-    @contextmanager
-    def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:  # noqa: ARG001
-        claim(session, _presence())
-        hub = LiveHub(session, unix_clock(), experiment, _nothing_to_check, warn)
-        yield Stage(hub, Operator(hub.publish, warn), _live_flush(experiment, 1.0), waits_for_people=True)
-
-    return stage
+    claim(session, _presence())
+    hub = LiveHub(session, unix_clock(), experiment, _nothing_to_check, warn)
+    reporter = Reporter(hub)
+    carrier = Operator(reporter, warn)
+    yield TrialEnvironment(hub, reporter, carrier, _live_flush(experiment, 1.0), waits_for_people=True)
 
 
 def _presence() -> Presence:

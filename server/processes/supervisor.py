@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 
-from server.processes.cpu_affinity import available_cores, keep, spread
+from server.processes.cpu_affinity import keep, spread
 from swarm.errors import RunFailedError
+from swarm.interpreter import child_environment, module_command
+from swarm.parallel import available_cores
 
 LEAVE_WITHIN_S = 5.0
+"""A process leaves after its step, which takes far less; one that has not by then hangs."""
 
 
 @dataclass(frozen=True)
@@ -47,12 +47,7 @@ class Supervisor:
             self._processes[spec.name] = self._started(spec, number)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None:
             self._signal(signal.SIGTERM)
         for process in self._processes.values():
@@ -76,12 +71,12 @@ class Supervisor:
     def _started(self, spec: ProcessSpec, number: int) -> subprocess.Popen[bytes]:
         with self._log(spec.name).open("wb") as output:
             process = subprocess.Popen(
-                [sys.executable, "-m", spec.module, *spec.arguments],
+                module_command(spec.module, *spec.arguments),
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 process_group=0,
-                env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+                env={**child_environment(), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
             )
         keep(process.pid, self._cores[number])
         return process

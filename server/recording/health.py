@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from server.hubs.hub import Batch
+from server.reporter import Reporter
 from swarm.clock import NS_PER_S
 from swarm.messages.topics import topic_of
 
 WINDOW_NS = 10 * NS_PER_S
+"""A hundred messages of the common rate of 10 Hz: a share is then known to some percent."""
 LOW_SHARE = 0.5
+"""A blackout of the simulated tracker, 3 s, leaves two thirds of a window: it is no fault."""
 
 
 class Health:
-    """Counts messages in windows of 10 s of the run; `report` is told of keys that fall behind or recover."""
+    """Counts messages in windows of 10 s of the run; an event tells of keys that fall behind or recover."""
 
-    def __init__(self, report: Callable[[str, str], None]) -> None:
-        self._report = report
+    def __init__(self, reporter: Reporter) -> None:
+        self._reporter = reporter
         self._counts: dict[str, int] = {}
         self._low: set[str] = set()
         self._window_began_ns: int | None = None
@@ -46,4 +47,4 @@ class Health:
         if (share < LOW_SHARE) != (key in self._low):
             self._low ^= {key}
             name = "slow" if share < LOW_SHARE else "recovered"
-            self._report(name, f"{key}: {share:.0%} of the declared rate")
+            self._reporter.event(name, f"{key}: {share:.0%} of the declared rate")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +15,16 @@ from swarm.analysis.copying.paths import path_table
 from swarm.analysis.copying.summary import Copying, read_copying
 from swarm.analysis.inputs import Inputs, default_out, find_inputs
 from swarm.analysis.learning_curves import RunCurves, curve_table, run_curves, trial_table
-from swarm.analysis.plots import plot_curves, save_png
+from swarm.analysis.plots import plot_curves
 from swarm.analysis.report import report
 from swarm.analysis.results_directory import AnalysisDirectory
 from swarm.analysis.summary import Summary
-from swarm.files import printable
+from swarm.files import printable, write_json, write_png, write_table, write_text
 from swarm.logs.identity import LogIdentity
 from swarm.logs.parquet import LogContent, Reading, read_logs
 
 _DAMAGE_SHOWN = 3
+"""Of a log: enough to see what is wrong with it."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,7 @@ class Request:
     sampled: bool = True
     """Also tables of poses, commands and truths, which are nearly all of a log."""
     threshold: int = 12
+    """Moves: a third above the shortest path of the paper's arena, 9."""
 
 
 @dataclass(frozen=True)
@@ -57,26 +58,28 @@ def analyze(request: Request, show: Callable[[int], object] = lambda _: None) ->
     inputs = find_inputs(request.runs)
     directory = AnalysisDirectory.open(out, inputs)
     reading = read_logs(inputs.logs, directory.tables, request.sampled, show)
-    curves = run_curves(pl.read_parquet(reading.tables["best_paths"], glob=False))
+    best_paths = pl.read_parquet(reading.tables["best_paths"], glob=False)
+    curves = run_curves(best_paths, inputs.shortest_moves)
     notes = [*inputs.notes, *_reading_notes(inputs, reading), *curves.notes]
     copying = read_copying(reading.tables, {log.name: log.cell_m for log in inputs.logs})
     summary = Summary(_title(inputs), reading, curves, compare_all(curves), request.threshold, notes, copying)
     files = _write(directory, curves, summary)
     analysis = Analysis(summary, directory.path, files | reading.tables)
-    directory.write_json("summary.json", analysis.as_json())
+    write_json(analysis.as_json(), directory.path / "summary.json")
     return analysis
 
 
 def _write(directory: AnalysisDirectory, curves: RunCurves, summary: Summary) -> dict[str, Path]:
-    means, trials = curve_table(curves), trial_table(curves)
+    tables = {"curves": curve_table(curves.curves), "trials": trial_table(curves)}
     drawn = _write_figures(directory, curves, summary)
     return {
         **drawn,
-        "curves.csv": directory.write("curves.csv", means.write_csv),
-        "curves.parquet": directory.write("curves.parquet", means.write_parquet),
-        "trials.csv": directory.write("trials.csv", trials.write_csv),
-        "trials.parquet": directory.write("trials.parquet", trials.write_parquet),
-        "report.md": directory.write_text("report.md", report(summary, "curves.png", drawn)),
+        **{
+            f"{name}.{form}": write_table(table, directory.path / f"{name}.{form}")
+            for name, table in tables.items()
+            for form in ("csv", "parquet")
+        },
+        "report.md": write_text(report(summary, "curves.png", drawn), directory.path / "report.md"),
         **_write_paths(directory, summary.copying),
     }
 
@@ -86,15 +89,15 @@ def _write_figures(directory: AnalysisDirectory, curves: RunCurves, summary: Sum
     if summary.copying:
         figures["curves_paper_axes.png"] = plot_curves(curves, summary.title, paper_axes=True)
     figures |= copying_figures(summary.copying)
-    return {name: directory.write(name, partial(save_png, figure)) for name, figure in figures.items()}
+    return {name: write_png(figure, directory.path / name) for name, figure in figures.items()}
 
 
 def _write_paths(directory: AnalysisDirectory, copying: Copying) -> dict[str, Path]:
     """The table of remembered paths, if there are any."""
     if not copying.paths:
         return {}
-    tables = AnalysisDirectory(directory.tables)
-    return {"copied_paths": tables.write("copied_paths.parquet", path_table(copying.paths).write_parquet)}
+    path = directory.tables / "copied_paths.parquet"
+    return {"copied_paths": write_table(path_table(copying.paths), path)}
 
 
 def _title(inputs: Inputs) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from swarm.analysis.learning_curves import RunCurves
 from swarm.statistics.effect_size import EffectSize, paired_effect_size
 from swarm.statistics.paired_tests import (
+    LEVEL,
     Window,
     max_t_test,
     paired_t_test,
@@ -18,7 +19,6 @@ from swarm.statistics.paired_tests import (
 )
 from swarm.statistics.samples import BoolArray, Curves, PairingError, mean_level
 
-LEVEL = 0.05
 SIGN_FLIP_SEED = 1
 """The same logs give the same p values."""
 

@@ -23,6 +23,11 @@ class Inputs:
     logs: tuple[LogIdentity, ...]
     notes: list[str] = field(default_factory=list)
 
+    @property
+    def shortest_moves(self) -> int:
+        """No best path in these logs can be shorter."""
+        return min(log.shortest_moves for log in self.logs)
+
 
 def find_inputs(runs: Sequence[Path]) -> Inputs:
     """The logs of run directories and log files; UserError if they cannot be analyzed together."""

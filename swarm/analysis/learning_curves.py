@@ -7,6 +7,7 @@ was left out, is said in `notes`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -14,8 +15,8 @@ import numpy as np
 import polars as pl
 
 from swarm.errors import UserError
-from swarm.statistics.intervals import Band, pointwise_t_band
-from swarm.statistics.samples import Curves, FloatArray
+from swarm.statistics.intervals import interval
+from swarm.statistics.samples import Curves, FloatArray, Scale
 
 Replicate = tuple[int, int]
 """(seed, trial)."""
@@ -31,27 +32,27 @@ class RunCurves:
     notes: list[str] = field(default_factory=list)
 
 
-def run_curves(best_paths: pl.DataFrame) -> RunCurves:
-    """From the table `best_paths`; UserError if no learner has made the ten moves of a first point."""
+def run_curves(best_paths: pl.DataFrame, shortest_moves: int) -> RunCurves:
+    """From the table `best_paths`, of arenas that have no path below `shortest_moves`.
+
+    UserError if no learner has made the ten moves of a first point.
+    """
     if best_paths.is_empty():
         raise UserError("no best path in these logs: a learner reports its first after ten moves")
     notes: list[str] = []
     points = _one_a_move(best_paths, notes)
+    cap = _cap(best_paths, notes)
+    scale = Scale(float(shortest_moves), float(cap))
     curves = {
-        str(condition): _curves(str(condition), rows, notes)
+        str(condition): _curves(str(condition), rows, scale, notes)
         for (condition,), rows in sorted(points.group_by("condition"), key=lambda item: str(item[0]))
     }
-    return RunCurves(curves, _cap(best_paths, notes), notes)
+    return RunCurves(curves, cap, notes)
 
 
-def interval(curves: Curves) -> Band | None:
-    """The mean with Student's 95 % interval over trials; None for a single trial, which has no interval."""
-    return pointwise_t_band(curves.values) if len(curves.values) > 1 else None
-
-
-def curve_table(found: RunCurves) -> pl.DataFrame:
-    """A row for each condition and point: `mean`, and `low` and `high` (null for a single trial)."""
-    return pl.concat(pl.DataFrame(_columns(curves)) for curves in found.curves.values())
+def curve_table(found: Mapping[str, Curves]) -> pl.DataFrame:
+    """A row for each condition and point: `mean`, and `low` and `high` (null where trials are too few)."""
+    return pl.concat(pl.DataFrame(_columns(curves)) for curves in found.values())
 
 
 def trial_table(found: RunCurves) -> pl.DataFrame:
@@ -92,7 +93,7 @@ def _one_a_move(best_paths: pl.DataFrame, notes: list[str]) -> pl.DataFrame:
     return once
 
 
-def _curves(condition: str, points: pl.DataFrame, notes: list[str]) -> Curves:
+def _curves(condition: str, points: pl.DataFrame, scale: Scale, notes: list[str]) -> Curves:
     """The curves of one condition at the moves that all of its learners reported."""
     learners = points.group_by("seed", "trial", "robot", maintain_order=True).len().height
     counted = points.group_by("move").len().sort("move")
@@ -108,7 +109,7 @@ def _curves(condition: str, points: pl.DataFrame, notes: list[str]) -> Curves:
     )
     replicates = tuple(mean.select("seed", "trial").unique(maintain_order=True).iter_rows())
     values = mean["length"].to_numpy().astype(np.float64).reshape(len(replicates), len(common))
-    return Curves(condition, common.to_numpy().astype(np.float64), values, replicates)
+    return Curves(condition, common.to_numpy().astype(np.float64), values, replicates, scale)
 
 
 def _note_cut(

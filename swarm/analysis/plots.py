@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 
-from swarm.analysis.learning_curves import RunCurves, interval
+from swarm.analysis.learning_curves import RunCurves
+from swarm.statistics.intervals import FEWEST
+from swarm.statistics.plots import draw_band
 from swarm.statistics.samples import Curves
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 """Told apart by colour-blind readers too (Okabe and Ito)."""
 GREY = "#595959"
 DRAWN_POINTS = 1500
+"""More than a picture has pixels for."""
 BOLD_POINTS = 300
+"""A curve of more is too ragged for a bold line."""
 LEGEND_COLUMNS = 3
+"""So many names fit the width of the picture."""
 POINT_MOVES = 10
 """A robot finds out its best path every so many moves."""
 
@@ -43,16 +46,9 @@ def plot_curves(found: RunCurves, title: str, paper_axes: bool = False) -> Figur
     return figure
 
 
-def save_png(figure: Figure, path: Path) -> None:
-    """Without the date and the version: the same logs give the same bytes."""
-    figure.savefig(path, format="png", dpi=150, metadata={"Software": None})
-
-
 def _draw(axes: Axes, curves: Curves, colour: str) -> None:
     drawn = curves.every(max(1, len(curves.times) // DRAWN_POINTS))
-    band = interval(drawn)
-    if band is not None:
-        axes.fill_between(drawn.times, band.low, band.high, color=colour, alpha=0.18, linewidth=0)
+    draw_band(axes, drawn, colour)
     trials = len(drawn.values)
     label = f"{curves.name}  ({trials} {'trial' if trials == 1 else 'trials'})"
     width = 1.8 if len(drawn.times) <= BOLD_POINTS else 1.0
@@ -94,8 +90,10 @@ def _note(found: RunCurves) -> str:
 
 def interval_note(found: RunCurves) -> str:
     """What the lines and bands of the picture are."""
-    trials = {len(curves.values) for curves in found.curves.values()}
-    if trials == {1}:
+    trials = [len(curves.values) for curves in found.curves.values()]
+    if max(trials) == 1:
         return "One trial of each condition: no interval can be given."
-    exception = " Where there is one trial only, no interval." if 1 in trials else ""
-    return f"Mean over trials with its 95 % interval (Student's t).{exception}"
+    if max(trials) < FEWEST:
+        return f"Mean over trials, and every trial: of fewer than {FEWEST} no interval can be given."
+    exception = f" Of fewer than {FEWEST} trials, every one." if min(trials) < FEWEST else ""
+    return f"Mean over trials with its 95 % interval (Student's t on the scale's logit).{exception}"

@@ -7,16 +7,17 @@ from typing import Any
 
 import polars as pl
 
-from swarm.analysis.comparison import LEVEL, Comparison, NoComparison
+from swarm.analysis.comparison import Comparison, NoComparison
 from swarm.analysis.copying.drawing import moves_text
 from swarm.analysis.copying.report import copying_section
 from swarm.analysis.plots import interval_note
 from swarm.analysis.summary import Summary
 from swarm.logs.completeness import health_totals, log_state
 from swarm.markdown import table, text_number
-from swarm.statistics.paired_tests import Window
+from swarm.statistics.paired_tests import LEVEL, Window
 
 _SHOWN = 20
+"""Rows of a table that is read, not searched."""
 _LEGEND = (
     "Path at the end: mean best path length in moves. Last columns: how many trials came down to that "
     "length and stayed there, and after how many moves half of all trials had (Kaplan-Meier)."
@@ -60,17 +61,24 @@ def condition_head(summary: Summary) -> list[str]:
 
 
 def _condition_row(name: str, values: dict[str, Any]) -> list[str]:
-    low, high = values["final_low"], values["final_high"]
     median = values["median_moves_to_threshold"]
     return [
         name,
         str(values["trials"]),
         f"{values['moves']:,}",
         text_number(values["final_mean"]),
-        "none, 1 trial" if low is None else f"{text_number(low)} to {text_number(high)}",
+        _interval(values),
         f"{values['reached_threshold']} of {values['trials']}",
         text_number(median, 0),
     ]
+
+
+def _interval(values: dict[str, Any]) -> str:
+    """The interval at the end, or what every trial came to where the trials are too few for one."""
+    low, high, each = values["final_low"], values["final_high"], values["final_of_each_trial"]
+    if each is None:
+        return f"{text_number(low)} to {text_number(high)}"
+    return "none, 1 trial" if len(each) == 1 else f"none; trials: {', '.join(map(text_number, sorted(each)))}"
 
 
 def _conditions(summary: Summary) -> str:
@@ -105,22 +113,29 @@ def _windows(windows: Sequence[Window]) -> str:
     if not windows:
         return "no difference"
     longest = sorted(windows, key=lambda window: window.duration, reverse=True)[:3]
-    shown = ", ".join(f"moves {w.start:,.0f} to {w.end:,.0f}" for w in sorted(longest, key=lambda w: w.start))
+    shown = ", ".join(_window(window) for window in sorted(longest, key=lambda window: window.start))
     return shown if len(windows) <= len(longest) else f"{len(windows)} windows, the longest {shown}"
 
 
+def _window(window: Window) -> str:
+    if window.start == window.end:
+        return f"move {window.start:,.0f}"
+    return f"moves {window.start:,.0f} to {window.end:,.0f}"
+
+
 def _paths(summary: Summary) -> str:
-    """Remembered paths, with how often each was replayed and its last R."""
+    """Remembered paths, numbered as in the pictures, with how often each was replayed and its last R."""
     paths = summary.copying.enacted
     if not paths:
         return ""
-    head = ["condition", "robot", "seed", "trial", "path", "source", "replays", "R at the end"]
+    head = ["condition", "robot", "seed", "trial", "path", "moves", "source", "replays", "R at the end"]
     body = [
         [
             path.condition,
             path.robot,
             str(path.seed),
             str(path.trial),
+            str(path.path),
             moves_text(path.moves),
             path.source,
             f"{path.replays:,}",
@@ -128,7 +143,8 @@ def _paths(summary: Summary) -> str:
         ]
         for path in paths[:_SHOWN]
     ]
-    return f"## Paths\n\nThe {len(body)} most replayed of {len(paths)}.\n\n{table(head, body)}"
+    shown = "" if len(body) == len(paths) else f"The {len(body)} most replayed of {len(paths)}.\n\n"
+    return f"## Paths\n\n{shown}{table(head, body)}"
 
 
 def _notes(summary: Summary) -> str:

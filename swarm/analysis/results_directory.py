@@ -7,15 +7,14 @@ directory that holds anything else is never touched.
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from swarm.analysis.inputs import Inputs
-from swarm.errors import UserError
-from swarm.files import printable
+from swarm.errors import RunFailedError, UserError
+from swarm.files import printable, write_json
 
 MADE_BY = "swarm analyze"
 CURE = "choose another --out"
@@ -39,36 +38,15 @@ class AnalysisDirectory:
                 _refuse_another(path, record)
             directory = cls(path)
             directory.tables.mkdir(exist_ok=True)
-            directory.write_json("inputs.json", record)
-        except OSError as error:
-            reason = error.strerror or str(error)
+            write_json(record, path / "inputs.json")
+        except (OSError, RunFailedError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
             raise UserError(f"{path}: results cannot be written there ({reason}); {CURE}") from error
         return directory
 
     @property
     def tables(self) -> Path:
         return self.path / "tables"
-
-    def write(self, name: str, write: Callable[[Path], object]) -> Path:
-        """Call `write` with a temporary name and give the file its own name once it is whole."""
-        path, beside = self.path / name, self.path / f".{name}.{os.getpid()}.part"
-        try:
-            write(beside)
-            beside.replace(path)
-        except OSError as error:
-            raise UserError(f"{path}: cannot be written ({error.strerror}); {CURE}") from error
-        finally:
-            beside.unlink(missing_ok=True)
-        return path
-
-    def write_json(self, name: str, content: Mapping[str, Any]) -> Path:
-        text = json.dumps(content, indent=2, allow_nan=False) + "\n"
-        return self.write(name, lambda path: path.write_text(text, encoding="utf-8"))
-
-    def write_text(self, name: str, text: str) -> Path:
-        """Names of files that are not UTF-8 are written with escapes."""
-        data = text.encode("utf-8", "backslashreplace")
-        return self.write(name, lambda path: path.write_bytes(data))
 
 
 def _record(name: str, digest: str) -> dict[str, str]:

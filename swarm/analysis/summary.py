@@ -8,9 +8,10 @@ from typing import Any
 
 from swarm.analysis.comparison import Comparison, NoComparison
 from swarm.analysis.copying.summary import Copying
-from swarm.analysis.learning_curves import RunCurves, interval
+from swarm.analysis.learning_curves import RunCurves
 from swarm.logs.completeness import health_totals
 from swarm.logs.parquet import LogContent, Reading
+from swarm.statistics.intervals import interval
 from swarm.statistics.samples import Curves, mean_level
 from swarm.statistics.survival import median_time, times_to_threshold
 
@@ -48,13 +49,14 @@ class Summary:
 
 
 def _condition(curves: Curves, threshold: int) -> dict[str, Any]:
-    band = interval(curves)
+    band, final = interval(curves), curves.values[:, -1]
     arrival = times_to_threshold(curves, threshold, lasting=True)
     median = median_time(arrival)
     return {
         "trials": len(curves.values),
         "moves": int(curves.times[-1]),
-        "final_mean": float(curves.values[:, -1].mean()),
+        "final_mean": float(final.mean()),
+        "final_of_each_trial": final.tolist() if band is None else None,
         "final_low": None if band is None else float(band.low[-1]),
         "final_high": None if band is None else float(band.high[-1]),
         "mean_over_run": float(mean_level(curves).values.mean()),

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from swarm.cli.output import print_json, require_extra
+from swarm.cli.output import print_json
+from swarm.extras import require_extra
 
 if TYPE_CHECKING:
     from swarm.analysis.analyze import Analysis

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from typing import Annotated
 
 import typer
 
@@ -15,19 +16,31 @@ from swarm.cli.reproduce import reproduce_command
 from swarm.cli.simulate import simulate_command
 from swarm.cli.trials import trials_command
 from swarm.errors import UserError
+from swarm.version import version_text
 
 app = typer.Typer(
     name="swarm",
     help="Learning experiments on a swarm of robots: simulate, reproduce, analyze.",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
 )
 
 
+def _show_version(asked: bool) -> None:
+    if asked:
+        typer.echo(version_text())
+        raise typer.Exit
+
+
 @app.callback()
-def _root() -> None:
-    """Keeps the verbs as sub-commands while there is only one."""
+def _root(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Print the version and leave."),
+    ] = False,
+) -> None:
+    """What belongs to no verb."""
 
 
 app.command("simulate")(simulate_command)
@@ -43,7 +56,7 @@ app.command("recover")(recover_command)
 def run() -> None:
     """Parse the command line and run the verb; a bad call becomes a UserError."""
     try:
-        code = app(standalone_mode=False)
+        code = app(standalone_mode=False, prog_name="swarm")
     except typer.TyperException as error:
         what = " ".join(str(error).split()) or "a verb is missing"
         raise UserError(f"{what} (see `swarm --help`)") from error

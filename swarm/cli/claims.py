@@ -9,8 +9,10 @@ from typing import Annotated, Any
 
 import typer
 
-from swarm.cli.output import print_json, require_extra
-from swarm.cli.reproduce import Jobs, Json, Out, Runs, Scheduler, Seed, Steps, cores, told_when_interrupted
+from swarm.cli.output import print_json
+from swarm.cli.reproduce import Jobs, Json, Out, Runs, Scheduler, Seed, Steps, told_when_interrupted
+from swarm.extras import require_extra
+from swarm.parallel import available_cores
 
 Figures = Annotated[
     list[str] | None, typer.Argument(help="fig12, 12, all, or a study file.", show_default="all")
@@ -31,7 +33,7 @@ def judge_claims(words: Sequence[str], command: str, **asked: Any) -> tuple[dict
 
     assessment = assess(chosen_names(words or ["all"]), Settings(**asked))
     files = {form: str(path) for form, path in write_report(assessment, command).items()}
-    lines = [f"{one.claim.figure}: {one.verdict.value}: {one.claim.text}" for one in assessment.judged]
+    lines = [f"{one.figure}: {one.verdict.value}: {one.claim.text}" for one in assessment.judged]
     return {**as_json(assessment), "files": files}, [*lines, summary(assessment), *files.values()]
 
 
@@ -49,7 +51,8 @@ def claims_command(
     asked = {"runs": runs, "steps": steps, "seed": seed, "out": out, "scheduler": scheduler}
     command = shlex.join(["swarm", *sys.argv[1:]])
     with told_when_interrupted():
-        result, lines = judge_claims(figure or [], command, **asked, jobs=cores() if jobs is None else jobs)
+        count = len(available_cores()) if jobs is None else jobs
+        result, lines = judge_claims(figure or [], command, **asked, jobs=count)
     if json:
         print_json(result)
     else:

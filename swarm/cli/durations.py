@@ -9,19 +9,18 @@ from typing import Annotated
 
 import typer
 
-from swarm.cli.output import print_json, require_extra
-
-DURATIONS = Path(__file__).parents[1] / "surrogate" / "data" / "durations.csv"
+from swarm.cli.output import print_json
+from swarm.extras import require_extra
 
 Json = Annotated[bool, typer.Option("--json", help="Print the results as one JSON object.")]
 
 
 def durations_command(
     run: Annotated[list[Path], typer.Argument(help="Run directories or .mcap files.")],
-    out: Annotated[Path, typer.Option(help="A new CSV file.")] = DURATIONS,
+    out: Annotated[Path, typer.Option(help="A new CSV file.")] = Path("durations.csv"),
     json: Json = False,
 ) -> None:
-    """Measure in logs how long moves and drives back take, for `swarm trials`."""
+    """Measure in logs how long moves and drives back take, for `swarm trials --durations`."""
     require_extra("lab", "mcap", "polars")
     from swarm.surrogate.durations import write_durations
 
@@ -40,13 +39,14 @@ def measured_in(runs: list[Path]) -> dict[str, list[float]]:
     import polars as pl
 
     from swarm.analysis.inputs import find_inputs
-    from swarm.geometry import Grid
+    from swarm.geometry import Move
     from swarm.logs.parquet import read_logs
     from swarm.surrogate.durations import Step, measured
 
-    goal = Grid(10, 10).goal
+    logs = find_inputs(runs).logs
+    goals = {log.name: log.grid.goal for log in logs}
     with tempfile.TemporaryDirectory() as folder:
-        tables = read_logs(find_inputs(runs).logs, Path(folder), False, lambda _: None).tables
+        tables = read_logs(logs, Path(folder), False, lambda _: None).tables
         moves = pl.read_parquet(tables["moves"], glob=False).sort("log", "publish_t_ns", maintain_order=True)
         carries = pl.read_parquet(tables["carries"], glob=False)
     carried_s: dict[str, list[float]] = defaultdict(list)
@@ -55,9 +55,9 @@ def measured_in(runs: list[Path]) -> dict[str, list[float]]:
     steps = (
         Step(
             f"{row['log']}/{row['robot']}",
-            row["action"],
+            Move[row["action"]],
             row["blocked"],
-            row["next_state"] == goal,
+            row["next_state"] == goals[row["log"]],
             row["duration_s"],
             row["publish_t_ns"] * 1e-9,
         )

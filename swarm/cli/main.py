@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 from io import TextIOWrapper
 
-from swarm.cli.output import require_extra
 from swarm.errors import guarded
+from swarm.extras import require_extra
 
 
 def _run() -> None:

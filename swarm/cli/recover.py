@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from swarm.cli.output import print_json, require_extra
+from swarm.cli.output import print_json
+from swarm.extras import require_extra
 from swarm.files import printable
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,8 +9,10 @@ from typing import Annotated, Any
 
 import typer
 
-from swarm.cli.output import print_json, require_extra
+from swarm.cli.output import print_json
 from swarm.errors import UserError
+from swarm.extras import require_extra
+from swarm.parallel import available_cores
 
 Runs = Annotated[
     int | None, typer.Option(help="Runs of each condition.", show_default="100, as in the paper")
@@ -63,7 +64,7 @@ def reproduce_command(
     """Reproduce the paper's simulated figures: a plot and a table each, from runs in parallel."""
     asked = {"runs": runs, "steps": steps, "seed": seed, "out": out, "scheduler": scheduler}
     with told_when_interrupted():
-        results = reproduce_figures(figure, **asked, jobs=cores() if jobs is None else jobs)
+        results = reproduce_figures(figure, **asked, jobs=len(available_cores()) if jobs is None else jobs)
     if json:
         print_json(results)
         return
@@ -81,8 +82,3 @@ def told_when_interrupted() -> Iterator[None]:
             "interrupted: what was finished is kept, and the same command goes on from there", err=True
         )
         raise
-
-
-def cores() -> int:
-    """How many cores this process may use."""
-    return len(os.sched_getaffinity(0))

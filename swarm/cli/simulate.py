@@ -9,7 +9,8 @@ from typing import Annotated
 
 import typer
 
-from swarm.cli.output import require_extra
+from swarm.extras import require_extra
+from swarm.interpreter import child_environment, module_command
 
 
 def simulate_command(
@@ -35,6 +36,6 @@ def simulate_command(
     require_extra("lab", "small_mcap", "rich")
     options = {"--out": out, "--seed": seed, "--moves": moves, "--speed": speed, "--processes": processes}
     given = [f"{name}={value}" for name, value in options.items() if value is not None]
-    command = [sys.executable, "-m", "server", str(experiment), *given, *(["--json"] if json else [])]
+    command = module_command("server", str(experiment), *given, *(["--json"] if json else []))
     sys.stdout.flush()
-    os.execv(sys.executable, command)
+    os.execve(sys.executable, command, child_environment())

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import os
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from swarm.cli.durations import DURATIONS
-from swarm.cli.output import print_json, require_extra
+from swarm.cli.output import print_json
 from swarm.errors import UserError
+from swarm.extras import require_extra
+from swarm.parallel import available_cores
 
 if TYPE_CHECKING:
     from swarm.statistics.samples import Curves
 
-COPIES = DURATIONS.parent / "best.csv"
 NOTE = (
     "Algorithm 3 on measured durations, copies drawn from rendered ones; "
     "a path that does not arrive counts as {cap}."
@@ -31,8 +30,8 @@ def many_trials(
     trials: int,
     moves: int | None,
     seed: int | None,
-    copies: Path,
-    durations: Path,
+    copies: Path | None,
+    durations: Path | None,
     full: list[Path],
     out: Path,
     jobs: int,
@@ -40,13 +39,15 @@ def many_trials(
     """Run the trials, and write picture and tables into a new directory."""
     require_extra("lab", "scipy", "polars", "matplotlib")
     from swarm.config.experiment import Experiment
+    from swarm.surrogate.copies import STORED_COPIES
+    from swarm.surrogate.durations import MEASURED_DURATIONS
     from swarm.surrogate.plots import first_trials, write_picture
     from swarm.surrogate.trials import PAPER_TRIALS, run_trials, summary, write_tables
 
     experiment = Experiment.load(file).changed(seed=seed, moves=moves)
     of_full = _curves_of(full) if full else None
     directory = _new_directory(out)
-    many = run_trials(experiment, copies, durations, trials, jobs)
+    many = run_trials(experiment, copies or STORED_COPIES, durations or MEASURED_DURATIONS, trials, jobs)
     files = write_tables(many, directory) | {"picture": str(directory / "curves.png")}
     note = NOTE.format(cap=experiment.learning.path_length_cap) + (FULL_NOTE if of_full else "")
     few = of_full or first_trials(many.curves, PAPER_TRIALS)
@@ -64,8 +65,10 @@ def _curves_of(runs: list[Path]) -> dict[str, Curves]:
 
     require_extra("lab", "mcap")
     with tempfile.TemporaryDirectory() as folder:
-        tables = read_logs(find_inputs(runs).logs, Path(folder), False, lambda _: None).tables
-        return run_curves(pl.read_parquet(tables["best_paths"], glob=False)).curves
+        logs = find_inputs(runs).logs
+        tables = read_logs(logs, Path(folder), False, lambda _: None).tables
+        shortest_moves = min(log.shortest_moves for log in logs)
+        return run_curves(pl.read_parquet(tables["best_paths"], glob=False), shortest_moves).curves
 
 
 def trials_command(
@@ -78,11 +81,15 @@ def trials_command(
         int | None, typer.Option(help="The root of all randomness.", show_default="the file's")
     ] = None,
     copies: Annotated[
-        Path, typer.Option(help="Stored copies, made by `robot-agent collect-copies`.")
-    ] = COPIES,
+        Path | None,
+        typer.Option(
+            help="Stored copies, made by `robot-agent collect-copies`.", show_default="the package's"
+        ),
+    ] = None,
     durations: Annotated[
-        Path, typer.Option(help="Durations of moves, made by `swarm durations`.")
-    ] = DURATIONS,
+        Path | None,
+        typer.Option(help="Durations of moves, made by `swarm durations`.", show_default="the package's"),
+    ] = None,
     full: Annotated[
         list[Path] | None,
         typer.Option(
@@ -100,7 +107,7 @@ def trials_command(
 ) -> None:
     """Run many trials without wheels: the learning of the robots on measured durations and stored copies."""
     out = out or Path("runs") / "trials" / experiment.stem
-    count = jobs or len(os.sched_getaffinity(0))
+    count = jobs or len(available_cores())
     result = many_trials(experiment, trials, moves, seed, copies, durations, full or [], out, count)
     if json:
         print_json(result)
@@ -122,12 +129,14 @@ def _lines(result: dict[str, Any]) -> list[str]:
     lines = []
     for name, found in result["conditions"].items():
         if "stays_low_from" in found:
-            at = ", ".join(
-                f"{move}: {mean} ±{half}" for move, (mean, half) in found["mean_and_half_interval"].items()
-            )
-            lines.append(
-                f"{name} ({found['trials']} trials): {at}; 12 or less from {found['stays_low_from']}"
-            )
+            at = ", ".join(_at(move, *numbers) for move, numbers in found["mean_and_interval"].items())
+            low_from = found["stays_low_from"]
+            end = "never 12 or less to the end" if low_from is None else f"12 or less from {low_from:.0f} on"
+            lines.append(f"{name} ({found['trials']} trials): {at}; {end}")
     copies = result["conditions"]["copies"]
     lines.append(f"paths remembered: {copies['remembered']}, of which wrong: {copies['wrong']}")
     return [*lines, *(f"wrote {path}" for path in result["files"].values())]
+
+
+def _at(move: str, mean: float, low: float | None, high: float | None) -> str:
+    return f"{move}: {mean}" if low is None else f"{move}: {mean} ({low} to {high})"

@@ -77,6 +77,11 @@ def distances(arena: Arena) -> NDArray[np.int32]:
     return moves
 
 
+def shortest_path(arena: Arena) -> float:
+    """Moves from the start to the goal."""
+    return float(distances(arena)[arena.grid.start])
+
+
 def expert_values(arena: Arena, gamma: float) -> NDArray[np.float64]:
     """The Q-table of an agent that has learnt all there is (states, moves): gamma^(moves still to go)."""
     to_go = distances(arena)[neighbours(arena)]

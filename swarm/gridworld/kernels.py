@@ -36,7 +36,7 @@ Truth = bool | Any
 Word = np.uint64 | Any
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-ALL_MOVES = (1 << MOVES) - 1
+ALL_MOVES = (1 << MOVES) - 1  # a set has a bit for each of its moves
 SETS = [[move for move in range(MOVES) if mask >> move & 1] for mask in range(ALL_MOVES + 1)]
 SIZE = np.array([len(members) for members in SETS], np.uint8)
 """How many actions a set has (256,)."""
@@ -109,8 +109,8 @@ def _greedy(actions: Word, stream: NDArray[np.uint64]) -> Word:
 
 
 @_inlined
-def _epsilon_greedy(actions: Word, rules: Rules, bits: Word, more_bits: Word) -> Word:
-    """`Controller._epsilon_greedy`, out of a set of greedy actions; no branch waits for a random number."""
+def _explored(actions: Word, rules: Rules, bits: Word, more_bits: Word) -> Word:
+    """One of the greedy actions, or any; no branch waits for a random number."""
     any_move = _integer(MOVES, more_bits)
     if actions == ALL_MOVES:
         return any_move
@@ -119,9 +119,10 @@ def _epsilon_greedy(actions: Word, rules: Rules, bits: Word, more_bits: Word) ->
 
 
 @_inlined
-def _explore_or_not(agent: AgentArrays, rules: Rules) -> Word:
+def _epsilon_greedy(agent: AgentArrays, rules: Rules) -> Word:
+    """`Controller._epsilon_greedy`."""
     actions = _U(agent.greedy[agent.state[0]])
-    return _epsilon_greedy(actions, rules, _bits(agent.stream), _bits(agent.stream))
+    return _explored(actions, rules, _bits(agent.stream), _bits(agent.stream))
 
 
 @_inlined
@@ -135,7 +136,7 @@ def _ratio(agent: AgentArrays, i: Whole, approach: Whole) -> Real:
     """`ImitationMemory.ratio`."""
     if approach == FIXED:
         return 1.0
-    return (agent.counted[i] + 1) / (agent.replicated[i] + 1)
+    return (agent.n_counted[i] + 1) / (agent.n_replicated[i] + 1)
 
 
 @_called
@@ -169,7 +170,7 @@ def remember(agent: AgentArrays, rules: Rules, moves: NDArray[np.uint8], start: 
     i = agent.remembered[0]
     for k in range(length):
         agent.paths[i, k] = moves[(start + k) % len(moves)]
-    agent.lengths[i], agent.replicated[i], agent.counted[i] = length, 0, 0
+    agent.lengths[i], agent.n_replicated[i], agent.n_counted[i] = length, 0, 0
     agent.remembered[0] += 1
     _weigh(agent, 0, rules.approach)
 
@@ -184,8 +185,8 @@ def _forget(agent: AgentArrays) -> None:
         for k in range(agent.paths.shape[1]):
             agent.paths[i, k] = agent.paths[i + 1, k]
         agent.lengths[i] = agent.lengths[i + 1]
-        agent.replicated[i] = agent.replicated[i + 1]
-        agent.counted[i] = agent.counted[i + 1]
+        agent.n_replicated[i] = agent.n_replicated[i + 1]
+        agent.n_counted[i] = agent.n_counted[i + 1]
         agent.ratios[i] = agent.ratios[i + 1]
     agent.remembered[0] -= 1
 
@@ -194,33 +195,33 @@ def _forget(agent: AgentArrays) -> None:
 def _choose(agent: AgentArrays, other: AgentArrays, rules: Rules) -> Word:
     """`Controller.choose`."""
     last = False
-    if agent.replayed[0] == NO_REPLAY:
+    if agent.replay[0] == NO_REPLAY:
         path = _choose_path(agent)
         if rules.beta * agent.ratios[path] <= _random(agent.stream):
-            return _explore_or_not(agent, rules)
-        agent.replayed[0], agent.replay_index[0], agent.change[0] = path, 0, 0.0
+            return _epsilon_greedy(agent, rules)
+        agent.replay[0], agent.replay_index[0], agent.q_change[0] = path, 0, 0.0
     else:
         agent.replay_index[0] += 1
-        last = agent.replay_index[0] == agent.lengths[agent.replayed[0]] - 1
+        last = agent.replay_index[0] == agent.lengths[agent.replay[0]] - 1
     state = agent.state[0]
     if rules.accesses:
         action = _greedy(_U(other.greedy[state]), agent.stream)
     else:
-        action = _U(agent.paths[agent.replayed[0], agent.replay_index[0]])
+        action = _U(agent.paths[agent.replay[0], agent.replay_index[0]])
     if not last and not (_U(agent.greedy[state]) >> action) & _ONE:
         _end(agent, rules, False)
-        return _explore_or_not(agent, rules)
+        return _epsilon_greedy(agent, rules)
     return action
 
 
 @_inlined
 def _end(agent: AgentArrays, rules: Rules, completed: Truth) -> None:
     """`Controller._end`."""
-    path = agent.replayed[0]
-    agent.replicated[path] += 1
-    agent.counted[path] += completed if rules.approach == COMPLETION else agent.change[0] > 0.0
+    path = agent.replay[0]
+    agent.n_replicated[path] += 1
+    agent.n_counted[path] += completed if rules.approach == COMPLETION else agent.q_change[0] > 0.0
     _weigh(agent, path, rules.approach)
-    agent.replayed[0] = NO_REPLAY
+    agent.replay[0] = NO_REPLAY
 
 
 @_inlined
@@ -266,14 +267,14 @@ def prepare(agent: AgentArrays) -> None:
 def step(world: ArenaArrays, agent: AgentArrays, other: AgentArrays, rules: Rules) -> Truth:
     """Choose, move and learn once; whether the goal was reached, and the agent put back to the start."""
     imitates = agent.remembered[0] > 0
-    action = _choose(agent, other, rules) if imitates else _explore_or_not(agent, rules)
+    action = _choose(agent, other, rules) if imitates else _epsilon_greedy(agent, rules)
     state = agent.state[0]
     next_state = _neighbour(world, state, action)
     arrived = next_state == world.goal
     change = _update(agent, rules, state, action, 1.0 if arrived else 0.0, next_state)
-    if imitates and agent.replayed[0] != NO_REPLAY:
-        agent.change[0] += change
-        completed = agent.replay_index[0] == agent.lengths[agent.replayed[0]] - 1
+    if imitates and agent.replay[0] != NO_REPLAY:
+        agent.q_change[0] += change
+        completed = agent.replay_index[0] == agent.lengths[agent.replay[0]] - 1
         if completed or arrived or next_state == state:
             _end(agent, rules, completed)
     if rules.seen:
@@ -361,7 +362,7 @@ def _practise(world: ArenaArrays, agent: AgentArrays, rules: Rules, steps: Whole
     while taken < steps and agent.arrivals[0] < reachings:
         bits, more_bits = _mixed(word + _GOLDEN), _mixed(word + _GOLDEN + _GOLDEN)
         word += _GOLDEN + _GOLDEN
-        action = _epsilon_greedy(_U(agent.greedy[state]), rules, bits, more_bits)
+        action = _explored(_U(agent.greedy[state]), rules, bits, more_bits)
         next_state = _neighbour(world, state, action)
         arrived = next_state == world.goal
         _update(agent, rules, state, action, 1.0 if arrived else 0.0, next_state)

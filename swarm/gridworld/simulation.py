@@ -28,6 +28,7 @@ from swarm.learning.memory import Approach
 from swarm.learning.q_table import ALPHA, GAMMA
 
 UNLIMITED = 2**62
+"""More steps than any machine makes, and twice as many still fit a signed word."""
 
 
 @dataclass(frozen=True)
@@ -189,14 +190,14 @@ def _agent(condition: Condition, seed: int, run: int, name: str) -> AgentArrays:
         watching=np.array([stream_word(seed, run, name, "watching")], np.uint64),
         paths=np.zeros((capacity, moves), np.uint8),
         lengths=np.zeros(capacity, np.int64),
-        replicated=np.zeros(capacity, np.int64),
-        counted=np.zeros(capacity, np.int64),
+        n_replicated=np.zeros(capacity, np.int64),
+        n_counted=np.zeros(capacity, np.int64),
         ratios=np.zeros(capacity),
         totals=np.zeros(capacity),
         remembered=np.zeros(1, np.int64),
-        replayed=np.full(1, state.NO_REPLAY, np.int64),
+        replay=np.full(1, state.NO_REPLAY, np.int64),
         replay_index=np.zeros(1, np.int64),
-        change=np.zeros(1),
+        q_change=np.zeros(1),
         trail=np.zeros(moves, np.uint8),
         trail_moves=np.zeros(1, np.int64),
         shown=np.zeros(moves, np.uint8),

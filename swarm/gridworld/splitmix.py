@@ -12,7 +12,9 @@ from swarm.learning.random import spawned_generator
 
 GOLDEN = 0x9E3779B97F4A7C15
 FIRST, SECOND = 0xBF58476D1CE4E5B9, 0x94D049BB133111EB
+"""SplitMix64's increment and multipliers (Steele, Lea and Flood, 2014)."""
 WORD = 2**64 - 1
+"""64 bits."""
 
 
 class SplitMix64:

@@ -8,8 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 NO_REPLAY = -1
+"""No path has this number."""
 FIXED, COMPLETION, AVERAGE_Q = 0, 1, 2
+"""`Approach` as the kernels know it."""
 WATCHES_NOBODY, WATCHES_EXPERT, WATCHES_OTHER = 0, 1, 2
+"""Whom a learner copies, as the kernels know it."""
 
 
 class ArenaArrays(NamedTuple):
@@ -72,18 +75,18 @@ class AgentArrays(NamedTuple):
     paths: NDArray[np.uint8]
     """(capacity, moves)"""
     lengths: NDArray[np.int64]
-    replicated: NDArray[np.int64]
-    counted: NDArray[np.int64]
+    n_replicated: NDArray[np.int64]
+    n_counted: NDArray[np.int64]
     """n_completed or n_Q+ (capacity,)"""
     ratios: NDArray[np.float64]
     """R_i of eq. 4 (capacity,)"""
     totals: NDArray[np.float64]
     """Their running sums (capacity,)"""
     remembered: NDArray[np.int64]
-    replayed: NDArray[np.int64]
+    replay: NDArray[np.int64]
     """The memory's place of the path being replayed, or NO_REPLAY"""
     replay_index: NDArray[np.int64]
-    change: NDArray[np.float64]
+    q_change: NDArray[np.float64]
     """The sum of the replay's changes of Q values"""
     trail: NDArray[np.uint8]
     """The last moves of this run, in a ring (moves,)"""

@@ -16,11 +16,10 @@ import polars as pl
 
 from swarm.logs.ending import COMPLETE, Sender
 from swarm.logs.identity import LogIdentity
-from swarm.logs.reader import LogChannel, Part
+from swarm.logs.reader import S_PER_NS, LogChannel, Part
 from swarm.messages.topics import topic_of
 
-_S_PER_NS = 1e-9
-_SCHEMA: dict[str, Any] = {
+HEALTH_SCHEMA: dict[str, Any] = {
     "log": pl.String,
     "seed": pl.Int64,
     "trial": pl.Int64,
@@ -76,7 +75,9 @@ class HealthTable:
         for channel in channels:
             restart = restarts[channel.key] = restarts.get(channel.key, -1) + 1
             found.append(self._row(channel) | {"restart": restart})
-        return pl.DataFrame([{name: row[name] for name in _SCHEMA} for row in found], schema=_SCHEMA)
+        return pl.DataFrame(
+            [{name: row[name] for name in HEALTH_SCHEMA} for row in found], schema=HEALTH_SCHEMA
+        )
 
     def _all_channels(self) -> list[LogChannel]:
         """Those seen, and those of which a sender says that they should have been."""
@@ -123,10 +124,10 @@ def _numbers(sequence: npt.NDArray[np.uint32], sent: int) -> dict[str, int | Non
 
 def _rates(publish_t_ns: npt.NDArray[np.int64]) -> dict[str, float | None]:
     """The mean rate from the first to the last message, and the longest time without one."""
-    lasted_s = float(np.ptp(publish_t_ns.astype(np.float64))) * _S_PER_NS if len(publish_t_ns) else 0.0
+    lasted_s = float(np.ptp(publish_t_ns.astype(np.float64))) * S_PER_NS if len(publish_t_ns) else 0.0
     if lasted_s <= 0:
         return {"seen_hz": None, "longest_silence_s": None}
-    silence_s = float(np.diff(np.sort(publish_t_ns)).max()) * _S_PER_NS
+    silence_s = float(np.diff(np.sort(publish_t_ns)).max()) * S_PER_NS
     return {"seen_hz": (len(publish_t_ns) - 1) / lasted_s, "longest_silence_s": silence_s}
 
 

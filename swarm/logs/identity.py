@@ -6,11 +6,12 @@ import hashlib
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from swarm.config.experiment import ArenaSettings, Role
 from swarm.files import printable
+from swarm.geometry import Grid
 from swarm.logs.ending import Ending, ending_of
 from swarm.logs.reader import LogError, LogReader, open_log
 
@@ -36,6 +37,8 @@ class LogIdentity:
     learners: frozenset[str]
     cell_m: float
     """The side of a cell of the grids."""
+    grid: Grid
+    """The cells of each robot's compartment."""
     ending: Ending = field(default_factory=Ending)
 
     @property
@@ -46,6 +49,11 @@ class LogIdentity:
     def condition(self, robot: str) -> str:
         """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""
         return self.conditions.get(robot, "" if robot in ("tracker", "server", "run") else UNKNOWN)
+
+    @property
+    def shortest_moves(self) -> int:
+        """From a grid's start to its goal, the opposite corner."""
+        return max(self.grid.columns, self.grid.rows) - 1
 
     @property
     def replicate(self) -> tuple[int, int]:
@@ -67,7 +75,9 @@ def identity_of(reader: LogReader) -> LogIdentity:
     """What the metadata say that have been read; of records that contradict each other the first counts."""
     path, metadata = reader.path, reader.metadata
     run, robots = metadata.get("run", {}), metadata.get("robots", {})
+    experiment = metadata.get("experiment", {}).get("toml", "")
     try:
+        arena = _arena(experiment)
         words = {robot: _role_and_condition(text) for robot, text in robots.items()}
         return LogIdentity(
             path=path,
@@ -79,7 +89,8 @@ def identity_of(reader: LogReader) -> LogIdentity:
             commit=metadata.get("versions", {}).get("commit", UNKNOWN),
             conditions={robot: condition for robot, (_, condition) in words.items()},
             learners=frozenset(robot for robot, (role, _) in words.items() if role == Role.LEARNER.value),
-            cell_m=_cell_m(metadata.get("experiment", {}).get("toml", "")),
+            cell_m=arena.cell_m,
+            grid=Grid(arena.columns, arena.rows),
             ending=ending_of(metadata),
         )
     except (KeyError, ValueError) as error:
@@ -94,14 +105,16 @@ def _role_and_condition(text: str) -> tuple[str, str]:
     return role, condition
 
 
-def _cell_m(experiment: str) -> float:
-    """Of the experiment's [arena]; the default where it says nothing that makes sense."""
-    default_m = ArenaSettings().cell_m
+def _arena(experiment: str) -> ArenaSettings:
+    """The experiment's [arena]; the default where it says nothing that makes sense."""
+    default = ArenaSettings()
     try:
-        cell_m = float(tomllib.loads(experiment).get("arena", {}).get("cell_m", default_m))
+        said = {**vars(default), **tomllib.loads(experiment).get("arena", {})}
+        cell_m, columns, rows = float(said["cell_m"]), int(said["columns"]), int(said["rows"])
     except (ValueError, TypeError, AttributeError):
-        return default_m
-    return cell_m if 0 < cell_m < math.inf else default_m
+        return default
+    sensible = 0 < cell_m < math.inf and columns > 0 and rows > 0
+    return replace(default, cell_m=cell_m, columns=columns, rows=rows) if sensible else default
 
 
 def _count(text: str) -> int:

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import polars as pl
 
+from swarm.files import write_whole
 from swarm.logs.completeness import HealthTable
+from swarm.logs.episodes import journeys, visits
 from swarm.logs.identity import LogIdentity
 from swarm.logs.reader import Damage, LogReader
 from swarm.logs.tables import (
@@ -24,8 +26,10 @@ from swarm.logs.tables import (
     rows,
     table_names,
 )
+from swarm.logs.units import parquet_metadata
 
 ROWS_IN_MEMORY = 500_000
+"""Of a table: some 60 MB of the widest."""
 
 
 @dataclass
@@ -67,12 +71,14 @@ class TableFiles:
     def _joined(self, name: str) -> Path:
         path, beside = self.folder / f"{name}.parquet", self.folder / f".{name}.parquet.part"
         parts = self._parts.pop(name, [])
+        units = parquet_metadata(empty_table(name).columns)
         if parts:
             rest = pl.concat(self._frames.pop(name, []) or [empty_table(name)])
             spilled = [pl.scan_parquet(part, glob=False) for part in parts]
-            pl.concat([*spilled, rest.lazy()]).sink_parquet(beside)
+            pl.concat([*spilled, rest.lazy()]).sink_parquet(beside, metadata=units)
         else:
-            pl.concat([empty_table(name), *self._frames.pop(name, [])]).write_parquet(beside)
+            whole = pl.concat([empty_table(name), *self._frames.pop(name, [])])
+            whole.write_parquet(beside, metadata=units)
         beside.replace(path)
         for part in parts:
             part.unlink()
@@ -80,6 +86,7 @@ class TableFiles:
 
 
 REJECTED_SHOWN = 100
+"""Of a log: they are examples, and a bad sender may have sent millions."""
 
 
 @dataclass
@@ -120,8 +127,26 @@ def read_logs(
     finally:
         files.discard()
     health = pl.concat(healths)
-    health.write_parquet(folder / "health.parquet")
-    return Reading(tables | {"health": folder / "health.parquet"}, health, contents)
+    together = {"health": health} | _episodes(tables)
+    written = {name: _write(frame, folder / f"{name}.parquet") for name, frame in together.items()}
+    return Reading(tables | written, health, contents)
+
+
+def _episodes(tables: dict[str, Path]) -> dict[str, pl.DataFrame]:
+    """The tables of journeys and, where there were any, of visits."""
+    found = {"journeys": journeys(pl.read_parquet(tables["moves"], glob=False))}
+    if "visit_phases" in tables:
+        watched = (
+            pl.read_parquet(tables[name], glob=False)
+            for name in ("visit_phases", "observations", "copy_errors")
+        )
+        found["visits"] = visits(*watched)
+    return found
+
+
+def _write(table: pl.DataFrame, path: Path) -> Path:
+    units = parquet_metadata(table.columns)
+    return write_whole(path, lambda temporary: table.write_parquet(temporary, metadata=units))
 
 
 def _without_empty(tables: dict[str, Path], names: Sequence[str]) -> dict[str, Path]:

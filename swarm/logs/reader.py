@@ -24,8 +24,11 @@ from swarm.logs.mcap_records import BROKEN, BrokenRecordError, FramingError, Rec
 from swarm.logs.mcap_walk import Walk
 from swarm.messages.topics import Topic, topic_of
 
+S_PER_NS = 1e-9
+"""Logs count nanoseconds."""
 PART_MESSAGES = 4096
 PART_BYTES = 1024 * 1024
+"""A part is whatever of the two is reached first: enough to decode in bulk, and a megabyte of memory."""
 
 
 @dataclass(frozen=True)
@@ -116,6 +119,7 @@ def nothing(channel: LogChannel) -> bool:
 
 
 MAX_EPOCH = 2**63 - 1
+"""The largest that the tables' signed columns hold."""
 SAID_ONCE = ("run", "robots", "experiment", "versions", "end", "sent")
 """Metadata of this project's recorder. Other programs give the same name to several records."""
 

@@ -11,9 +11,10 @@ import numpy as np
 import polars as pl
 from google.protobuf.message import Message
 
+from swarm.geometry import Move
 from swarm.logs.columns import column
 from swarm.logs.identity import LogIdentity
-from swarm.logs.reader import LogChannel, Part
+from swarm.logs.reader import S_PER_NS, LogChannel, Part
 from swarm.messages import topics
 from swarm.messages.topics import Topic
 from swarm.messages.validation import BadMessageError, decode
@@ -33,7 +34,7 @@ LEARNING: dict[Topic[Any], str] = {
 }
 """What is said about learning and about the run: small, always read."""
 WATCHING: dict[Topic[Any], str] = {
-    topics.VISIT: "visits",
+    topics.VISIT: "visit_phases",
     topics.OBSERVATION: "observations",
     topics.COPY_ERROR: "copy_errors",
 }
@@ -91,15 +92,15 @@ def rows(part: Part, identity: LogIdentity) -> PartRows:
         raise ValueError(f"{part.channel.key} enters no table")
     messages, good, rejected = _decoded(part, topic.message)
     origin = pl.DataFrame(_origin(part, identity, good))
-    return PartRows(_tables(topic, origin, messages), rejected)
+    return PartRows(_tables(topic, origin, messages, identity.grid.columns), rejected)
 
 
 def empty_table(table: str) -> pl.DataFrame:
     """A table without rows, with the columns that it would have."""
     topic = next(topic for topic in TABLE_OF if table in table_names([topic]))
-    texts = dict.fromkeys(("log", "condition", "robot"), pl.String)
-    origin = pl.DataFrame({name: pl.Series([], dtype=texts.get(name, pl.Int64)) for name in _ORIGIN})
-    return next(found.frame for found in _tables(topic, origin, []) if found.table == table)
+    types: dict[str, Any] = dict.fromkeys(("log", "condition", "robot"), pl.String) | {"t_s": pl.Float64}
+    origin = pl.DataFrame({name: pl.Series([], dtype=types.get(name, pl.Int64)) for name in _ORIGIN})
+    return next(found.frame for found in _tables(topic, origin, [], 1) if found.table == table)
 
 
 _ORIGIN = (
@@ -108,6 +109,7 @@ _ORIGIN = (
     "trial",
     "condition",
     "robot",
+    "t_s",
     "epoch",
     "sequence",
     "publish_t_ns",
@@ -151,6 +153,7 @@ def _origin(part: Part, identity: LogIdentity, good: slice | list[int]) -> dict[
         "trial": constant(identity.trial),
         "condition": constant(identity.condition(publisher)),
         "robot": constant(publisher),
+        "t_s": pl.Series(part.publish_t_ns[good] * S_PER_NS, dtype=pl.Float64),
         "epoch": constant(part.channel.epoch),
         "sequence": pl.Series(sequence),
         "publish_t_ns": pl.Series(part.publish_t_ns[good]),
@@ -158,14 +161,46 @@ def _origin(part: Part, identity: LogIdentity, good: slice | list[int]) -> dict[
     }
 
 
-def _tables(topic: Topic[Any], origin: pl.DataFrame, messages: list[Message]) -> list[Rows]:
+def _tables(
+    topic: Topic[Any], origin: pl.DataFrame, messages: list[Message], grid_columns: int
+) -> list[Rows]:
     fields = [field for field in topic.message.DESCRIPTOR.fields if not is_nested(field)]
     own = origin.with_columns(column(field, messages).alias(field.name) for field in fields)
     nested = [
         Rows(name, nested_table(origin, topic.message, messages, name))
         for name in nested_names(topic.message)
     ]
-    return [Rows(TABLE_OF[topic], own), *nested]
+    return [Rows(TABLE_OF[topic], _readable(own, grid_columns)), *nested]
+
+
+_BY_COMPASS = ("action", "moves", "window", "true_moves", "copied_moves")
+"""Moves by number in the messages; `moves` only where it is a list, else it is a count."""
+
+
+def _readable(frame: pl.DataFrame, grid_columns: int) -> pl.DataFrame:
+    """Moves by their compass names, and beside each state its column and row."""
+    types = frame.schema
+    named = [
+        _compass_names(pl.col(name), types[name])
+        for name in _BY_COMPASS
+        if name in types and (name != "moves" or types[name].is_nested())
+    ]
+    for prefix in ("", "next_"):
+        if f"{prefix}state" in types:
+            state = pl.col(f"{prefix}state")
+            named += [(state % grid_columns).alias(f"{prefix}column")]
+            named += [(state // grid_columns).alias(f"{prefix}row")]
+    return frame.with_columns(named)
+
+
+def _compass_names(moves: pl.Expr, of_type: pl.DataType) -> pl.Expr:
+    """Null for a number that is no move."""
+    names = {int(move): move.name for move in Move}
+
+    def named(numbers: pl.Expr) -> pl.Expr:
+        return numbers.replace_strict(names, default=None, return_dtype=pl.String)
+
+    return moves.list.eval(named(pl.element())) if of_type.is_nested() else named(moves)
 
 
 PLACE = "place"

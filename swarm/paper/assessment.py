@@ -8,11 +8,10 @@ from pathlib import Path
 
 from swarm.errors import UserError
 from swarm.gridworld.condition import Condition
-from swarm.paper.catalogue import load_claims, load_figure
+from swarm.paper.catalogue import load_figure
 from swarm.paper.claim import (
     Better,
     Check,
-    Claim,
     FindsShortestBy,
     FindsShortestSooner,
     HigherRatio,
@@ -42,16 +41,21 @@ class Assessment:
 
 def assess(names: Iterable[str], settings: Settings) -> Assessment:
     """Run, plot and judge all that the text says of these figures; UserError if it says nothing."""
-    figures = {figure.name: figure for figure in map(load_figure, names)}
-    claims = [claim for claim in load_claims(names) if claim.figure in figures]
-    if not claims:
-        raise UserError(f"the text makes no claim that can be checked about {', '.join(figures)}")
-    studies = [figures[name] for name in dict.fromkeys(claim.figure for claim in claims)]
-    runs = max((settings.runs_of(study) for study in studies if isinstance(study, Study)), default=1)
-    store = run_all(((condition, runs) for condition in _needed(claims, studies)), settings)
+    asked = [load_figure(name) for name in names]
+    figures = [figure for figure in asked if figure.claims]
+    if not figures:
+        nothing_about = ", ".join(figure.name for figure in asked)
+        raise UserError(f"the text makes no claim that can be checked about {nothing_about}")
+    studies = [figure for figure in figures if isinstance(figure, Study)]
+    runs = max((settings.runs_of(study) for study in studies), default=1)
+    store = run_all(((condition, runs) for figure in figures for condition in _needed(figure)), settings)
     results = Results(store, runs)
-    judged = tuple(judge(claim, Evidence(results, _horizon(figures[claim.figure]))) for claim in claims)
-    plots = {study.name: render_plot(study, results) for study in studies if isinstance(study, Study)}
+    judged = tuple(
+        judge(figure.name, claim, Evidence(results, _horizon(figure)))
+        for figure in figures
+        for claim in figure.claims
+    )
+    plots = {study.name: render_plot(study, results) for study in studies}
     return Assessment(judged, plots, store.root / f"{runs}-runs", runs, settings.seed, settings.steps)
 
 
@@ -59,11 +63,10 @@ def _horizon(figure: Figure) -> int:
     return figure.horizon_steps if isinstance(figure, Study) else LARGE_HORIZON_STEPS
 
 
-def _needed(claims: Iterable[Claim], studies: Iterable[Figure]) -> Iterator[Condition]:
-    for study in studies:
-        if isinstance(study, Study):
-            yield from study.series.values()
-    for claim in claims:
+def _needed(figure: Figure) -> Iterator[Condition]:
+    if isinstance(figure, Study):
+        yield from figure.series.values()
+    for claim in figure.claims:
         for check in claim.checks:
             yield from _conditions(check)
 

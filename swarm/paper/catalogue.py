@@ -2,27 +2,41 @@
 
 from __future__ import annotations
 
-import importlib
 import importlib.util
-import pkgutil
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from swarm import paper
 from swarm.errors import UserError, nearest
-from swarm.paper.claim import Claim
+from swarm.paper import section_2_2, section_2_3_copying, section_2_3_given, section_2_4
 from swarm.paper.study import Drawing, Figure, Study
 
-_MODULE = re.compile(r"figure_(\d\d)")
-
-
-def figure_names() -> list[str]:
-    """fig1, fig2, ... in the paper's order: one for each file of `swarm.paper`."""
-    found = (_MODULE.fullmatch(module.name) for module in pkgutil.iter_modules(paper.__path__))
-    return [f"fig{number}" for number in sorted(int(match[1]) for match in found if match)]
+FIGURES: dict[str, Callable[[], Figure]] = {
+    "fig1": section_2_2.figure_1,
+    "fig2": section_2_2.figure_2,
+    "fig3": section_2_2.figure_3,
+    "fig4": section_2_2.figure_4,
+    "fig5": section_2_2.figure_5,
+    "fig6": section_2_2.figure_6,
+    "fig7": section_2_2.figure_7,
+    "fig8": section_2_2.figure_8,
+    "fig9": section_2_2.figure_9,
+    "fig10": section_2_3_given.figure_10,
+    "fig11": section_2_3_given.figure_11,
+    "fig12": section_2_3_given.figure_12,
+    "fig13": section_2_3_given.figure_13,
+    "fig14": section_2_3_given.figure_14,
+    "fig15": section_2_3_copying.figure_15,
+    "fig16": section_2_3_copying.figure_16,
+    "fig17": section_2_3_copying.figure_17,
+    "fig18": section_2_3_copying.figure_18,
+    "fig19": section_2_4.figure_19,
+    "fig20": section_2_4.figure_20,
+    "fig21": section_2_4.figure_21,
+}
+"""In the paper's order."""
 
 
 def chosen_names(asked: Sequence[str]) -> list[str]:
@@ -35,45 +49,34 @@ def chosen_names(asked: Sequence[str]) -> list[str]:
 
 
 def load_figure(name: str) -> Figure:
-    """The study or drawing that the file of this figure describes."""
-    figure = _called(name, _module(name).figure)
+    """The study or drawing of this name, or the one that a user's file describes."""
+    if name in FIGURES:
+        return FIGURES[name]()
+    figure = _called(name, _user_module(Path(name)).figure)
     if not isinstance(figure, Study | Drawing):
         raise UserError(f"{name}: its figure() returns no Study and no Drawing")
     return figure
 
 
-def load_claims(names: Iterable[str]) -> list[Claim]:
-    """What the paper says about these figures, in its order."""
-    modules = {name: _module(name) for name in names}
-    found = (_called(name, module.claims) for name, module in modules.items() if hasattr(module, "claims"))
-    return [claim for claims in found for claim in claims]
-
-
 def _meant(word: str) -> list[str]:
-    known = figure_names()
     if word.endswith(".py"):
         return [word]
     if word.lower() == "all":
-        return known
+        return list(FIGURES)
     name = re.sub(r"^(?:fig(?:ure)?[ ._-]?)?0*(?=\d)", "fig", word.lower())
-    if name not in known:
-        raise UserError(f"no figure {word!r} of the paper can be reproduced; {_hint(name, known)}")
+    if name not in FIGURES:
+        raise UserError(f"no figure {word!r} of the paper can be reproduced; {_hint(name)}")
     return [name]
 
 
-def _hint(name: str, known: list[str]) -> str:
-    number = re.fullmatch(r"fig(\d+)", name)
-    if number is None:
-        hint = nearest(name, [*known, "all"])
-        return hint if hint.startswith("did you") else f"known: {known[0]}-{known[-1]} and all"
-    close = min(known, key=lambda figure: abs(int(figure[3:]) - int(number[1])))
-    return f"the nearest is {close!r} (figures {known[0][3:]}-{known[-1][3:]} are of simulations)"
-
-
-def _module(name: str) -> ModuleType:
-    if name.endswith(".py"):
-        return _user_module(Path(name))
-    return importlib.import_module(f"{paper.__name__}.figure_{int(name[3:]):02}")
+def _hint(name: str) -> str:
+    first, *_, last = FIGURES
+    number = name.removeprefix("fig")
+    if not number.isdecimal():
+        hint = nearest(name, [*FIGURES, "all"])
+        return hint if hint.startswith("did you") else f"known: {first}-{last} and all"
+    close = min(FIGURES, key=lambda figure: abs(int(figure[3:]) - int(number)))
+    return f"the nearest is {close!r} (figures {first[3:]}-{last[3:]} are of simulations)"
 
 
 def _called(name: str, call: Callable[[], Any]) -> Any:

@@ -17,7 +17,8 @@ class Better:
     """`better` has significantly shorter best paths than `worse`.
 
     With `start_step` or `end_step`, the paper names when this begins or ends; a time counts as reproduced
-    if it lies within `around_steps` of the one named. Without them, it is said of the whole curve.
+    if it lies within `around_steps` of the one named: this project's reading of "around", of which the paper
+    gives no number. Without them, it is said of the whole curve.
     """
 
     better: Condition
@@ -73,8 +74,7 @@ Check = Better | NoDifference | FindsShortestSooner | FindsShortestBy | HigherRa
 
 @dataclass(frozen=True)
 class Claim:
-    """A sentence of the paper about one figure, in its exact words, and what has to be so for it to hold."""
+    """A sentence of the paper about a figure, in its exact words, and what has to be so for it to hold."""
 
-    figure: str
     text: str
     checks: tuple[Check, ...]

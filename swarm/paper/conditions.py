@@ -16,12 +16,14 @@ from swarm.gridworld.condition import (
     Teacher,
 )
 from swarm.learning.memory import Approach, ObservedPath
-from swarm.paper.claim import Better
+from swarm.paper.claim import Better, Claim
 from swarm.paper.study import Study
 
 BETAS = (0.1, 0.3, 0.5)
+"""Of figures 3 and 5 to 9."""
 SMALL_HORIZON_STEPS = 20_000
 LARGE_HORIZON_STEPS = 20_000_000
+"""How far the paper's figures go: 3 and 5 to 9, and 12 to 21."""
 
 BENEFICIAL = ObservedPath((Move.SE,) * 5)
 """Figure 2."""
@@ -67,17 +69,31 @@ ACCESSING_EXPERT = _large("accessing_expert", AccessExpert())
 ACCESSING_EACH_OTHER = _large("accessing_each_other", AccessEachOther())
 
 
-def one_path_study(name: str, title: str, approach: Approach, path: ObservedPath) -> Study:
+def one_path_study(
+    name: str, title: str, approach: Approach, path: ObservedPath, claims: tuple[Claim, ...]
+) -> Study:
     """Figures 3 and 5-9: the three betas beside no imitation, on the 10 x 10 arena."""
     series = {"no imitation": SMALL_NO_IMITATION}
     series |= {f"β = {beta}": one_path(approach, path, beta) for beta in BETAS}
-    return Study(name, title, series, SMALL_HORIZON_STEPS, interval_points=10)
+    return Study(name, title, series, SMALL_HORIZON_STEPS, interval_points=10, claims=claims)
 
 
-def large_study(name: str, title: str, series: dict[str, Condition], interval_points: int = 1) -> Study:
+def large_study(
+    name: str,
+    title: str,
+    series: dict[str, Condition],
+    claims: tuple[Claim, ...],
+    interval_points: int = 1,
+) -> Study:
     """Figures 12 and 15-21: agents on the 100 x 100 arena, over time in 100 time units."""
     return Study(
-        name, title, series, LARGE_HORIZON_STEPS, time_unit_steps=100, interval_points=interval_points
+        name,
+        title,
+        series,
+        LARGE_HORIZON_STEPS,
+        time_unit_steps=100,
+        interval_points=interval_points,
+        claims=claims,
     )
 
 

@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import accumulate
-from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
 
-from swarm.files import write_whole
 from swarm.geometry import Grid, Move
 from swarm.paper.results import Results
 from swarm.paper.study import Drawing, Shown, Study
 from swarm.paper.tables import ratio_table
-from swarm.statistics.intervals import Band, pointwise_t_band
+from swarm.statistics.intervals import FEWEST
+from swarm.statistics.plots import draw_band, draw_error_bars, interval_words
 from swarm.statistics.samples import Curves
 
 DRAWN_POINTS = 2000
+"""More than a picture has pixels for."""
 COLOURS = ("black", "tab:red", "tab:blue", "tab:green", "tab:orange", "tab:purple")
 
 
 def plot_study(study: Study, results: Results) -> Figure:
     """The study's plot."""
-    figure = Figure(figsize=(7.2, 4.6), layout="constrained")
+    figure = Figure(figsize=(8.8, 4.4), layout="constrained")
     axes = figure.add_subplot()
     axes.set_title(study.title, fontsize="medium", wrap=True)
     if study.shown is Shown.RATIOS:
@@ -34,15 +34,6 @@ def plot_study(study: Study, results: Results) -> Figure:
     return figure
 
 
-def save_png(figure: Figure, path: Path) -> None:
-    """Written whole, and without the date: the same results give the same bytes."""
-
-    def write(temporary: Path) -> None:
-        figure.savefig(temporary, format="png", dpi=110, metadata={"Software": None})
-
-    write_whole(path, write)
-
-
 def _draw_curves(axes: Axes, study: Study, results: Results) -> None:
     for (label, condition), colour in zip(study.series.items(), _colours(len(study.series)), strict=True):
         curves = results.curves(condition, study.horizon_steps)
@@ -50,9 +41,9 @@ def _draw_curves(axes: Axes, study: Study, results: Results) -> None:
     unit = "time units" if study.time_unit_steps == 1 else f"{study.time_unit_steps} time units"
     axes.set_xlabel(f"Time ({unit})")
     axes.set_ylabel("Best path length")
-    axes.set_xlim(left=0)
+    axes.set_xlim(0, results.horizon(study.horizon_steps) / study.time_unit_steps)
     axes.set_ylim(bottom=0)
-    _add_legend(axes, results.runs)
+    _add_legend(axes, interval_words(results.runs, "run"))
 
 
 def _draw_mean(axes: Axes, curves: Curves, study: Study, label: str, colour: str) -> None:
@@ -60,47 +51,46 @@ def _draw_mean(axes: Axes, curves: Curves, study: Study, label: str, colour: str
 
     A page has room for some 2,000 points; of more, evenly spaced ones are drawn.
     """
-    drawn = curves.every(max(1, len(curves.times) // DRAWN_POINTS))
-    times = drawn.times / study.time_unit_steps
-    band = pointwise_t_band(drawn.values) if len(drawn.values) > 1 else None
-    axes.plot(times, drawn.values.mean(axis=0), color=colour, label=label, linewidth=1)
-    if band is None:
-        return
+    thinned = curves.every(max(1, len(curves.times) // DRAWN_POINTS))
+    drawn = replace(thinned, times=thinned.times / study.time_unit_steps)
+    axes.plot(drawn.times, drawn.values.mean(axis=0), color=colour, label=label, linewidth=1)
     if study.interval_points == 1:
-        axes.fill_between(times, band.low, band.high, color=colour, alpha=0.25, linewidth=0)
+        draw_band(axes, drawn, colour)
     else:
-        _draw_error_bars(axes, times[:: study.interval_points], _every(band, study.interval_points), colour)
-
-
-def _draw_error_bars(axes: Axes, times: np.ndarray, band: Band, colour: str) -> None:
-    axes.errorbar(
-        times, band.centre, yerr=band.centre - band.low, color=colour, fmt="none", elinewidth=0.6, capsize=1
-    )
-
-
-def _every(band: Band, points: int) -> Band:
-    return Band(band.centre[::points], band.low[::points], band.high[::points])
+        draw_error_bars(axes, drawn, colour, first=0, every=study.interval_points)
 
 
 def _draw_ratios(axes: Axes, study: Study, results: Results) -> None:
-    """A bar for each path, with the 95 % interval of its mean."""
+    """A bar for each path, with the 95 % interval of its mean, or a dot for each of too few runs."""
     tables = ratio_table(study, results)
     width = 0.8 / max(1, len(tables))
     for place, (label, table) in enumerate(tables.items()):
-        means = np.array([row["mean"] for row in table.values()], float)
-        highs = np.array([row["high"] for row in table.values()], float)
+        low, mean, high = (
+            np.array([row[name] for row in table.values()], float) for name in ("low", "mean", "high")
+        )
         at = np.arange(len(table)) + (place - (len(tables) - 1) / 2) * width
-        axes.bar(at, means, width, yerr=np.nan_to_num(highs - means), capsize=3, label=label)
+        errors = np.nan_to_num([mean - low, high - mean])
+        axes.bar(at, mean, width, yerr=errors if errors.any() else None, capsize=3, label=label)
+        if 1 < results.runs < FEWEST:
+            axes.plot(at, results.ratios(study.series[label]).T, ".", color="black", markersize=4)
         axes.set_xticks(np.arange(len(table)), list(table))
     axes.set_xlabel("Path")
     axes.set_ylabel("R")
-    axes.yaxis.set_major_locator(MultipleLocator(0.1))
-    _add_legend(axes, results.runs)
+    axes.set_ylim(bottom=0)
+    _add_legend(axes, interval_words(results.runs, "run"))
 
 
-def _add_legend(axes: Axes, runs: int) -> None:
-    title = "1 run" if runs == 1 else f"{runs} runs, mean and 95 % intervals"
-    axes.legend(title=title, title_fontsize="small", fontsize="small")
+def _add_legend(axes: Axes, title: str) -> None:
+    """Beside the axes, where it hides nothing."""
+    axes.legend(
+        title=title,
+        title_fontsize="small",
+        fontsize="small",
+        loc="upper left",
+        bbox_to_anchor=(1.0, 1.0),
+        frameon=False,
+        alignment="left",
+    )
 
 
 def _colours(count: int) -> list[str]:

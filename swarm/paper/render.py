@@ -6,8 +6,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from swarm.files import write_whole
-from swarm.gridworld.arena import distances
+from swarm.files import write_png, write_table
+from swarm.gridworld.arena import shortest_path
 from swarm.paper.options import Settings
 from swarm.paper.results import Results
 from swarm.paper.store import RunStore, Timing
@@ -34,19 +34,18 @@ def results_folder(results: Results) -> Path:
 
 def render_plot(study: Study, results: Results) -> Path:
     """Only the plot of a study."""
-    from swarm.paper.plots import plot_study, save_png
+    from swarm.paper.plots import plot_study
 
     path = results_folder(results) / f"{study.name}.png"
     path.parent.mkdir(exist_ok=True)
-    save_png(plot_study(study, results), path)
-    return path
+    return write_png(plot_study(study, results), path)
 
 
 def _render_drawing(drawing: Drawing, folder: Path) -> dict[str, Any]:
-    from swarm.paper.plots import draw, save_png
+    from swarm.paper.plots import draw
 
     folder.mkdir(exist_ok=True)
-    save_png(draw(drawing), folder / f"{drawing.name}.png")
+    write_png(draw(drawing), folder / f"{drawing.name}.png")
     paths = {label: [move.name for move in moves] for label, (_, moves) in drawing.paths.items()}
     grid = {
         "columns": drawing.grid.columns,
@@ -71,7 +70,7 @@ def _render_study(study: Study, results: Results) -> dict[str, Any]:
     table = curve_table(study, results)
     plot = render_plot(study, results)
     parquet = plot.with_suffix(".parquet")
-    write_whole(parquet, lambda path: table.write_parquet(path))
+    write_table(table, parquet)
     return {
         "runs": results.runs,
         "seed": results.store.seed,
@@ -97,14 +96,10 @@ def _curves(table: pl.DataFrame) -> dict[str, Any]:
 def _scores(study: Study, results: Results) -> dict[str, Any]:
     return {
         label: dict(
-            study.score(results.curves(condition, study.horizon_steps), _shortest_moves(condition.arena))
+            study.score(results.curves(condition, study.horizon_steps), shortest_path(condition.arena))
         )
         for label, condition in study.series.items()
     }
-
-
-def _shortest_moves(arena: Any) -> float:
-    return float(distances(arena)[arena.grid.start])
 
 
 def _speed(study: Study, results: Results) -> dict[str, float | None]:

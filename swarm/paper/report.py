@@ -8,7 +8,8 @@ from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 
-from swarm.files import write_whole
+from swarm.files import write_text
+from swarm.markdown import table
 from swarm.paper.assessment import Assessment
 from swarm.paper.report_json import as_json
 from swarm.paper.verdicts.finding import Finding, Tested, Verdict
@@ -77,14 +78,13 @@ def summary(assessment: Assessment) -> str:
 def as_markdown(assessment: Assessment, command: str) -> str:
     """The verdict table, then every comparison; `command` is what made it."""
     verdicts = [
-        (judged.claim.figure, judged.claim.text, f"**{judged.verdict.value}**")
-        for judged in assessment.judged
+        (judged.figure, judged.claim.text, f"**{judged.verdict.value}**") for judged in assessment.judged
     ]
     blocks = [
         "# The paper's claims about its simulations, and what was measured",
         f"Made by `{command}`: {assessment.runs} runs of each condition, seed {assessment.seed}. "
         f"{summary(assessment)}.",
-        _markdown_table(("figure", "the paper's words", "verdict"), verdicts),
+        table(("figure", "the paper's words", "verdict"), verdicts),
         "## Every comparison",
         LEGEND,
         *(_details(judged) for judged in assessment.judged),
@@ -93,13 +93,8 @@ def as_markdown(assessment: Assessment, command: str) -> str:
 
 
 def _details(judged: Judged) -> str:
-    heading = f"### {judged.claim.figure}: {judged.verdict.value}\n\n> {judged.claim.text}"
-    return f"{heading}\n\n{_markdown_table(COLUMNS, map(row, judged.findings))}"
-
-
-def _markdown_table(columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
-    lines = [columns, tuple("---" for _ in columns), *rows]
-    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
+    heading = f"### {judged.figure}: {judged.verdict.value}\n\n> {judged.claim.text}"
+    return f"{heading}\n\n{table(COLUMNS, map(row, judged.findings))}"
 
 
 COLOURS = {
@@ -124,7 +119,7 @@ def as_html(assessment: Assessment, command: str) -> str:
         f"Made by <code>{escape(command)}</code>: {assessment.runs} runs of each condition, "
         f"seed {assessment.seed}. {escape(summary(assessment))}."
     )
-    figures = dict.fromkeys(judged.claim.figure for judged in assessment.judged)
+    figures = dict.fromkeys(judged.figure for judged in assessment.judged)
     return "\n".join(
         [
             f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>',
@@ -140,7 +135,7 @@ def as_html(assessment: Assessment, command: str) -> str:
 def _figure(figure: str, assessment: Assessment) -> str:
     plot = assessment.plots.get(figure)
     parts = [f'<h2 id="{figure}">{figure}</h2>', _image(figure, plot) if plot else ""]
-    parts += [_claim(judged) for judged in assessment.judged if judged.claim.figure == figure]
+    parts += [_claim(judged) for judged in assessment.judged if judged.figure == figure]
     return "\n".join(parts)
 
 
@@ -153,7 +148,7 @@ def _claim(judged: Judged) -> str:
 def _verdict_table(judged: Iterable[Judged]) -> str:
     rows = (
         (
-            f'<a href="#{one.claim.figure}">{one.claim.figure}</a>',
+            f'<a href="#{one.figure}">{one.figure}</a>',
             escape(one.claim.text),
             f'<span style="background:{COLOURS[one.verdict]}">{one.verdict.value}</span>',
         )
@@ -181,9 +176,4 @@ def write_report(assessment: Assessment, command: str) -> dict[str, Path]:
         "html": ("claims.html", as_html(assessment, command)),
     }
     assessment.folder.mkdir(parents=True, exist_ok=True)
-    return {form: _written(assessment.folder / name, text) for form, (name, text) in texts.items()}
-
-
-def _written(path: Path, text: str) -> Path:
-    write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
-    return path
+    return {form: write_text(text, assessment.folder / name) for form, (name, text) in texts.items()}

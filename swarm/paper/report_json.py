@@ -24,7 +24,7 @@ def as_json(assessment: Assessment) -> dict[str, Any]:
 
 def _claim(judged: Judged) -> dict[str, Any]:
     return {
-        "figure": judged.claim.figure,
+        "figure": judged.figure,
         "text": judged.claim.text,
         "verdict": judged.verdict.value,
         "comparisons": [_finding(finding) for finding in judged.findings],

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swarm.errors import RunFailedError
+from swarm.gridworld.arena import shortest_path
 from swarm.gridworld.condition import Condition
 from swarm.paper.store import RunStore
-from swarm.statistics.samples import Curves, FloatArray, average_of_learners
+from swarm.statistics.samples import Curves, FloatArray, Scale, average_of_learners
 
 if TYPE_CHECKING:
     import polars as pl
@@ -57,7 +58,8 @@ class Results:
         points = min(map(len, rows))
         times = condition.evaluate_every * np.arange(1.0, points + 1)
         replicates = tuple((self.store.seed, run) for run in range(self.runs))
-        return Curves(condition.name, times, np.stack([row[:points] for row in rows]), replicates)
+        scale = Scale(shortest_path(condition.arena), float(condition.arena.longest_path))
+        return Curves(condition.name, times, np.stack([row[:points] for row in rows]), replicates, scale)
 
     def _load(self, condition: Condition, run: int) -> pl.DataFrame:
         try:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from swarm.errors import RunFailedError, UserError
-from swarm.files import write_whole
+from swarm.files import write_json, write_whole
 from swarm.gridworld.condition import Condition
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def _settle(folder: Path, settings: dict[str, Any], cure: str) -> None:
                 f"{folder} exists and holds something else than results of swarm reproduce; {cure}"
             )
         else:
-            write_whole(path, lambda temporary: temporary.write_text(json.dumps(settings, indent=1) + "\n"))
+            write_json(settings, path)
     except (OSError, ValueError, RunFailedError) as error:
         raise UserError(f"{folder} cannot be used for results: {error}; {cure}") from error
 

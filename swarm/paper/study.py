@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from swarm.errors import UserError
 from swarm.geometry import Grid, Move
 from swarm.gridworld.condition import Condition
+from swarm.paper.claim import Claim
 
 if TYPE_CHECKING:
     from swarm.statistics.samples import Curves
@@ -54,7 +55,7 @@ class Study:
     `series` maps the legend's labels to the conditions. The best path length is shown up to
     `horizon_steps`, over time in units of `time_unit_steps`, as the mean of `runs` runs with 95 %
     intervals at every `interval_points`-th evaluated point. `score` sums a curve up in a few numbers, given
-    the length of the arena's shortest path.
+    the length of the arena's shortest path. `claims` are what the text says of the figure.
     """
 
     name: str
@@ -66,6 +67,7 @@ class Study:
     interval_points: int = 1
     shown: Shown = Shown.CURVES
     score: Score = field(default=learning_score, repr=False)
+    claims: tuple[Claim, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.series:
@@ -83,6 +85,7 @@ class Drawing:
     grid: Grid
     paths: Mapping[str, tuple[tuple[int, int], tuple[Move, ...]]] = field(default_factory=dict)
     marks_ends: bool = True
+    claims: tuple[Claim, ...] = ()
 
 
 Figure = Study | Drawing

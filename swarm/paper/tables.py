@@ -11,14 +11,16 @@ from swarm.learning.random import spawned_generator
 from swarm.paper.results import Results
 from swarm.paper.study import Study
 from swarm.statistics.intervals import (
+    FEWEST,
     Band,
     average,
     bootstrap_bands,
+    interval,
     pointwise_t_band,
     simultaneous_band,
     weighted_iqm,
 )
-from swarm.statistics.samples import Curves, FloatArray
+from swarm.statistics.samples import Curves, FloatArray, Scale
 
 if TYPE_CHECKING:
     import polars as pl
@@ -52,9 +54,8 @@ def path_names(condition: Condition, places: int) -> list[str]:
     return [f"path {place + 1}" for place in range(places)]
 
 
-def finite(values: FloatArray) -> list[float | None]:
-    """For JSON, which knows no NaN."""
-    return [float(value) if np.isfinite(value) else None for value in values]
+SCALE_OF_R = Scale(0.0, 1.0)
+"""Eq. 2 and 4 are fractions."""
 
 
 def _series_table(label: str, curves: Curves, seed: int) -> pl.DataFrame:
@@ -63,22 +64,24 @@ def _series_table(label: str, curves: Curves, seed: int) -> pl.DataFrame:
     rng = spawned_generator(seed, curves.name, len(curves.values), "curves", "bootstrap")
     columns: dict[str, Any] = {"step": curves.times.astype(np.int64), "mean": average(curves.values)}
     columns["iqm"] = average(curves.values, weighted_iqm)
-    for name, band in _bands(curves.values, rng).items():
+    for name, band in _bands(curves, rng).items():
         columns[f"{name}low"], columns[f"{name}high"] = band.low, band.high
     named = [pl.lit(label).alias("series"), pl.lit(curves.name).alias("condition")]
     frame = pl.DataFrame(columns).select(*named, pl.all())
     return frame.with_columns(pl.selectors.float().fill_nan(None))
 
 
-def _bands(values: FloatArray, rng: np.random.Generator) -> dict[str, Band]:
-    if len(values) < 2:
+def _bands(curves: Curves, rng: np.random.Generator) -> dict[str, Band]:
+    """All of one kind: where the runs are too few for one interval, they are for every one."""
+    pointwise, values = interval(curves), curves.values
+    if pointwise is None:
         unknown = np.full(values.shape[1], np.nan)
         names = ("", "simultaneous_", "iqm_", "iqm_simultaneous_")
         return dict.fromkeys(names, Band(unknown, unknown, unknown))
-    iqm, simultaneous_iqm = bootstrap_bands(values, rng, weighted_iqm, resamples=1000)
+    iqm, simultaneous_iqm = bootstrap_bands(values, rng, weighted_iqm, curves.scale, resamples=1000)
     return {
-        "": pointwise_t_band(values),
-        "simultaneous_": simultaneous_band(values, rng),
+        "": pointwise,
+        "simultaneous_": simultaneous_band(values, rng, curves.scale),
         "iqm_": iqm,
         "iqm_simultaneous_": simultaneous_iqm,
     }
@@ -88,8 +91,8 @@ def _ratios(condition: Condition, ratios: FloatArray) -> dict[str, dict[str, flo
     rows = {}
     for name, column in zip(path_names(condition, ratios.shape[1]), ratios.T, strict=True):
         known = column[np.isfinite(column)]
-        half = pointwise_t_band(known[:, None]).high[0] - known.mean() if len(known) > 1 else np.nan
-        low, high = finite(np.array([known.mean() - half, known.mean() + half]))
+        band = pointwise_t_band(known[:, None], SCALE_OF_R) if len(known) >= FEWEST else None
+        low, high = (None, None) if band is None else (float(band.low[0]), float(band.high[0]))
         rows[name] = {"mean": float(known.mean()), "low": low, "high": high}
     return rows
 

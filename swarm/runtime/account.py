@@ -8,10 +8,10 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
-ACCOUNT = "account/{name}"
-EVERY_ACCOUNT = "account/**"
 MAX_ACCOUNT_BYTES = 65_536
+"""Some hundred keys of 32 characters each take a tenth of it."""
 _MAX_NUMBER = 2**32 - 1
+"""A log keeps 32 bits of a number."""
 
 
 def pack_account(sent: Mapping[str, int]) -> bytes:

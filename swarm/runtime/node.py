@@ -11,8 +11,8 @@ from swarm.clock import WallClock
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header
-from swarm.messages.topics import Delivery, Topic
-from swarm.runtime.account import ACCOUNT, pack_account
+from swarm.messages.topics import ACCOUNT, Delivery, Topic
+from swarm.runtime.account import pack_account
 from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Inbox, Publisher, Session
 
@@ -59,6 +59,36 @@ class Sequencer:
         return number
 
 
+class LivePublisher:
+    """Sends messages over the network, each with its sender's epoch, its number and the time."""
+
+    def __init__(self, session: Session, clock: WallClock, epoch: int) -> None:
+        self.epoch = epoch
+        self._session = session
+        self._clock = clock
+        self._sequencer = Sequencer()
+        self._publishers: dict[str, Publisher] = {}
+
+    def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
+        """Send a message under the topic's key, of a robot if it has one."""
+        key = topic.key(robot)
+        header = Header(self.epoch, self._sequencer.following(key), self._clock.now_ns())
+        if key not in self._publishers:
+            self._publishers[key] = self._session.publisher(key, topic.delivery)
+        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
+
+    @property
+    def sent(self) -> Mapping[str, int]:
+        """Key -> the number of its last message."""
+        return self._sequencer.last
+
+    def give_account(self, name: str) -> None:
+        """Tell the server, as the last thing, how many messages of each key have been sent."""
+        header = Header(self.epoch, 1, self._clock.now_ns())
+        publisher = self._session.publisher(ACCOUNT.format(name=name), Delivery.EVERY)
+        publisher.put(pack_account(self.sent), attachment=header.pack())
+
+
 class LiveNode:
     """Takes part over the network at the pace of a clock: on boards, and in simulation at a given speed."""
 
@@ -66,9 +96,7 @@ class LiveNode:
         self._session = session
         self._clock = clock
         self._period_s = period_s
-        self._epoch = epoch
-        self._sequencer = Sequencer()
-        self._publishers: dict[str, Publisher] = {}
+        self._live = LivePublisher(session, clock, epoch)
         self._inboxes: list[tuple[Inbox, Subscription[Any]]] = []
         self.keys_received: set[str] = set()
         self._run_states = self.subscribe(topics.RUN_STATE)
@@ -81,17 +109,11 @@ class LiveNode:
         return subscription
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
-        key = topic.key(robot)
-        header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
-        if key not in self._publishers:
-            self._publishers[key] = self._session.publisher(key, topic.delivery)
-        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
+        self._live.publish(topic, message, robot)
 
     def give_account(self, name: str) -> None:
         """Tell the server, as the last thing, how many messages of each key this process has sent."""
-        header = Header(self._epoch, 1, self._clock.now_ns())
-        publisher = self._session.publisher(ACCOUNT.format(name=name), Delivery.EVERY)
-        publisher.put(pack_account(self._sequencer.last), attachment=header.pack())
+        self._live.give_account(name)
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import Experiment
@@ -23,15 +23,28 @@ from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import EPOCH, LockstepNode, patient
 from swarm.runtime.node import LiveNode, Node
 from swarm.runtime.zenoh_session import Session, SessionSettings
+from swarm.version import version_text
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """A parser whose errors are one line (exit code 2)."""
+    """A parser whose errors are one line (exit code 2), with `--version`."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self.add_argument("--version", action=_ShowVersion, nargs=0, help="print the version and leave")
 
     def error(self, message: str) -> NoReturn:
         raise UserError(f"{message} (see `{self.prog} --help`)")
+
+
+class _ShowVersion(argparse.Action):
+    """Looks the version up only when it is asked for: that takes a board longer than a start should."""
+
+    def __call__(self, *_: Any) -> NoReturn:
+        print(version_text())
+        sys.exit(0)
 
 
 def add_common_arguments(parser: argparse.ArgumentParser) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize, special
 
+from swarm.statistics.intervals import pointwise_t_band
 from swarm.statistics.samples import Sample, paired_differences, refuse_zero_variance
 
 
@@ -30,10 +31,9 @@ def paired_effect_size(first: Sample, second: Sample, level: float = 0.95) -> Ef
     refuse_zero_variance(differences.name, differences.values)
     pairs = len(differences.values)
     mean, spread = float(differences.values.mean()), float(differences.values.std(ddof=1))
-    half = float(special.stdtrit(pairs - 1, 0.5 + level / 2)) * spread / np.sqrt(pairs)
-    return EffectSize(
-        mean, (mean - half, mean + half), mean / spread, d_z_interval(mean / spread, pairs, level), pairs
-    )
+    band = pointwise_t_band(differences.values[:, None], differences.scale, level)
+    around_mean = float(band.low[0]), float(band.high[0])
+    return EffectSize(mean, around_mean, mean / spread, d_z_interval(mean / spread, pairs, level), pairs)
 
 
 def d_z_interval(d_z: float, pairs: int, level: float = 0.95) -> tuple[float, float]:
@@ -41,6 +41,10 @@ def d_z_interval(d_z: float, pairs: int, level: float = 0.95) -> tuple[float, fl
     low = _noncentrality(d_z, pairs, 0.5 + level / 2, step=-1)
     high = _noncentrality(d_z, pairs, 0.5 - level / 2, step=1)
     return low, high
+
+
+NARROW = 1e-10
+"""Far below the two decimals of d_z that anybody reads."""
 
 
 def _noncentrality(d_z: float, pairs: int, probability: float, step: int) -> float:
@@ -58,4 +62,4 @@ def _noncentrality(d_z: float, pairs: int, probability: float, step: int) -> flo
     near, far = d_z - stride, d_z + stride
     while np.sign(excess(near)) == np.sign(excess(far)):
         near, far = far, far + stride
-    return float(optimize.brentq(excess, *sorted((near, far)), xtol=1e-10))
+    return float(optimize.brentq(excess, *sorted((near, far)), xtol=NARROW))

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import special
 
 from swarm.errors import UserError
-from swarm.statistics.samples import FloatArray
+from swarm.statistics.samples import Curves, FloatArray, Scale
 
 
 class Average(Protocol):
@@ -47,6 +47,7 @@ def average(values: FloatArray, of: Average = weighted_mean) -> FloatArray:
 
 
 _CHUNK_ELEMENTS = 4_000_000
+"""Of resampled values at a time: 32 MB."""
 
 
 @dataclass(frozen=True)
@@ -57,17 +58,53 @@ class Band:
     low: FloatArray
     high: FloatArray
 
+    @property
+    def errors(self) -> FloatArray:
+        """How far the limits are below and above the curve (2, points)."""
+        return np.array([self.centre - self.low, self.high - self.centre])
 
-def pointwise_t_band(values: FloatArray, level: float = 0.95) -> Band:
-    """Student's t interval of the mean at each point of `values` (replicates, points)."""
+
+FEWEST = 5
+"""Of fewer replicates no interval is given: where it says 19 of 20, the best that can be made holds the truth
+in less than four of five cases (docs/decisions/intervals.md)."""
+
+
+def interval(curves: Curves) -> Band | None:
+    """The mean of curves with its 95 % interval at each point; None of fewer than `FEWEST` replicates."""
+    return pointwise_t_band(curves.values, curves.scale) if len(curves.values) >= FEWEST else None
+
+
+def pointwise_t_band(values: FloatArray, scale: Scale | None = None, level: float = 0.95) -> Band:
+    """Student's t interval of the mean at each point of `values` (replicates, points), inside the scale."""
     error = standard_error(values)
-    half = special.stdtrit(len(values) - 1, 0.5 + level / 2) * error
-    mean = average(values)
-    return Band(mean, mean - half, mean + half)
+    return band_around(average(values), special.stdtrit(len(values) - 1, 0.5 + level / 2) * error, scale)
+
+
+NEAREST_TO_THE_END = 1e-12
+"""Of a share of the scale: its logit is still finite; a mean so near an end has no error worth showing."""
+
+
+def band_around(centre: FloatArray, half: FloatArray, scale: Scale | None) -> Band:
+    """`centre` with `half` an interval on each side, made on the logit's axis where there is a scale.
+
+    There the error is, by the delta method, the error over share * (1 - share): the limits approach the ends
+    of the scale and never pass them.
+    """
+    if scale is None:
+        return Band(centre, centre - half, centre + half)
+    span = scale.highest - scale.lowest
+    share = np.clip((centre - scale.lowest) / span, NEAREST_TO_THE_END, 1 - NEAREST_TO_THE_END)
+    reach = half / span / (share * (1 - share))
+    low, high = (scale.lowest + span * special.expit(special.logit(share) + way * reach) for way in (-1, 1))
+    return Band(centre, np.where(half > 0, low, centre), np.where(half > 0, high, centre))
 
 
 def simultaneous_band(
-    values: FloatArray, rng: np.random.Generator, level: float = 0.95, resamples: int = 2000
+    values: FloatArray,
+    rng: np.random.Generator,
+    scale: Scale | None = None,
+    level: float = 0.95,
+    resamples: int = 2000,
 ) -> Band:
     """The bootstrap max-T band of the mean curve.
 
@@ -78,14 +115,14 @@ def simultaneous_band(
     largest = np.concatenate(
         [_largest_t(weights, values) for weights in _resampled(len(values), values.shape[1], resamples, rng)]
     )
-    half = np.quantile(largest, level) * error
-    return Band(mean, mean - half, mean + half)
+    return band_around(mean, np.quantile(largest, level) * error, scale)
 
 
 def bootstrap_bands(
     values: FloatArray,
     rng: np.random.Generator,
     of: Average = weighted_mean,
+    scale: Scale | None = None,
     level: float = 0.95,
     resamples: int = 2000,
 ) -> tuple[Band, Band]:
@@ -99,10 +136,10 @@ def bootstrap_bands(
     chunks = _resampled(len(values), values.shape[0] * values.shape[1], resamples, rng)
     drawn = np.concatenate([of(weights, values) for weights in chunks])
     low, high = np.quantile(drawn, [(1 - level) / 2, (1 + level) / 2], axis=0)
-    scale = drawn.std(axis=0)
-    distance = np.divide(np.abs(drawn - centre), scale, out=np.zeros_like(drawn), where=scale > 0)
-    half = np.quantile(distance.max(axis=1), level) * scale
-    return Band(centre, low, high), Band(centre, centre - half, centre + half)
+    spread = drawn.std(axis=0)
+    distance = np.divide(np.abs(drawn - centre), spread, out=np.zeros_like(drawn), where=spread > 0)
+    half = np.quantile(distance.max(axis=1), level) * spread
+    return Band(centre, low, high), band_around(centre, half, scale)
 
 
 def standard_error(values: FloatArray) -> FloatArray:
@@ -124,13 +161,17 @@ def _resampled(replicates: int, width: int, resamples: int, rng: np.random.Gener
     return [chunk for chunk in np.array_split(counts.astype(np.float64), chunks) if len(chunk)]
 
 
+ROUNDING = 1e-9
+"""Of the largest value: a spread below it comes of rounding alone, with seven digits to spare."""
+
+
 def _largest_t(weights: FloatArray, values: FloatArray) -> FloatArray:
     centred = values - values.mean(axis=0)
     replicates = len(values)
     mean = weighted_mean(weights, centred)
     spread = np.clip(weighted_mean(weights, centred**2) - mean**2, 0, None)
     error = np.sqrt(spread / (replicates - 1))
-    varies = error > 1e-9 * np.abs(centred).max(axis=0)
+    varies = error > ROUNDING * np.abs(centred).max(axis=0)
     t = np.divide(np.abs(mean), error, out=np.zeros_like(mean), where=varies)
     largest: FloatArray = t.max(axis=1)
     return largest

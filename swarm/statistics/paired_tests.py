@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special
+from scipy import stats
 
 from swarm.statistics.samples import (
     BoolArray,
@@ -15,6 +15,9 @@ from swarm.statistics.samples import (
     paired_differences,
     refuse_zero_variance,
 )
+
+LEVEL = 0.05
+"""Of every test: the paper's."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +41,8 @@ def paired_t_test(first: Sample, second: Sample) -> TTest:
     """Is the mean of `first` minus `second` 0? PairingError if that cannot be asked of these samples."""
     differences = paired_differences(first, second)
     refuse_zero_variance(differences.name, differences.values)
-    test = _t_of(differences.values[:, None])
-    return TTest(float(test.t[0]), float(test.p[0]), len(differences.values) - 1)
+    found = stats.ttest_1samp(differences.values, 0.0)
+    return TTest(float(found.statistic), float(found.pvalue), int(found.df))
 
 
 def pointwise_t_test(first: Curves, second: Curves) -> PointwiseTest:
@@ -50,19 +53,17 @@ def pointwise_t_test(first: Curves, second: Curves) -> PointwiseTest:
     """
     differences = paired_differences(first, second)
     refuse_zero_variance(differences.name, differences.values.ravel())
-    return _t_of(differences.values)
-
-
-def _t_of(differences: FloatArray) -> PointwiseTest:
-    mean = differences.mean(axis=0)
-    error = differences.std(axis=0, ddof=1) / np.sqrt(len(differences))
-    constant = np.all(differences == differences[0], axis=0)
-    t = np.where(mean == 0, 0.0, np.copysign(np.inf, mean))
-    np.divide(mean, error, out=t, where=~constant)
-    return PointwiseTest(t, 2 * special.stdtr(len(differences) - 1, -np.abs(t)))
+    values = differences.values
+    varies = np.any(values != values[0], axis=0)
+    t = np.where(values[0] == 0, 0.0, np.copysign(np.inf, values[0]))
+    p = np.where(values[0] == 0, 1.0, 0.0)
+    found = stats.ttest_1samp(values[:, varies], 0.0)
+    t[varies], p[varies] = found.statistic, found.pvalue
+    return PointwiseTest(t, p)
 
 
 _CHUNK = 500
+"""Tosses at a time: 0.8 MB of them by 200 points."""
 
 
 @dataclass(frozen=True)

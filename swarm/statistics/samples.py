@@ -1,4 +1,4 @@
-"""What a study measures: numbers or curves of replicates, their area, and which may be paired."""
+"""What a study measures: numbers or curves of replicates, and which may be paired."""
 
 from __future__ import annotations
 
@@ -16,12 +16,22 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
+class Scale:
+    """What a value can be at least and at most, such as a path's length: the shortest, and the cap."""
+
+    lowest: float
+    highest: float
+
+
+@dataclass(frozen=True)
 class Sample:
     """One number of each replicate: `values` (replicates,); `replicates` names each row's seed and run."""
 
     name: str
     values: FloatArray
     replicates: tuple[Hashable, ...]
+    scale: Scale | None = None
+    """None where the values know no bounds."""
 
     def __post_init__(self) -> None:
         _check_rows(self.name, self.values, self.replicates, dimensions=1)
@@ -35,6 +45,8 @@ class Curves:
     times: FloatArray
     values: FloatArray
     replicates: tuple[Hashable, ...]
+    scale: Scale | None = None
+    """None where the values know no bounds."""
 
     def __post_init__(self) -> None:
         _check_rows(self.name, self.values, self.replicates, dimensions=2)
@@ -48,12 +60,12 @@ class Curves:
     def between(self, start: float, end: float) -> Curves:
         """The part of the curves with start <= time <= end."""
         inside = (self.times >= start) & (self.times <= end)
-        return Curves(self.name, self.times[inside], self.values[:, inside], self.replicates)
+        return replace(self, times=self.times[inside], values=self.values[:, inside])
 
     def every(self, points: int) -> Curves:
         """Each `points`-th point, counted so that the last of every group of `points` is kept."""
         chosen = slice(points - 1, None, points)
-        return Curves(self.name, self.times[chosen], self.values[:, chosen], self.replicates)
+        return replace(self, times=self.times[chosen], values=self.values[:, chosen])
 
 
 def average_of_learners(values: npt.NDArray[np.generic]) -> FloatArray:
@@ -71,15 +83,9 @@ def _check_rows(name: str, values: FloatArray, replicates: tuple[Hashable, ...],
         raise UserError(f"{name}: a value is not finite; censor or drop it before any statistics")
 
 
-def area_under_curve(curves: Curves) -> Sample:
-    """The trapezoidal area of each replicate, in the curve's unit times the unit of time."""
-    area = np.asarray(np.trapezoid(curves.values, curves.times, axis=1))
-    return Sample(curves.name, area, curves.replicates)
-
-
 def mean_level(curves: Curves) -> Sample:
-    """The mean over the curve's points of each replicate: the height of its area, in the curve's unit."""
-    return Sample(curves.name, curves.values.mean(axis=1), curves.replicates)
+    """The mean over the curve's points of each replicate, in the curve's unit."""
+    return Sample(curves.name, curves.values.mean(axis=1), curves.replicates, curves.scale)
 
 
 Measured = TypeVar("Measured", Sample, Curves)
@@ -100,7 +106,14 @@ def paired_differences(first: Measured, second: Measured) -> Measured:
     if isinstance(first, Curves) and isinstance(second, Curves) and not _same_times(first, second):
         raise PairingError(f"{names} cannot be paired: they were not measured at the same times")
     difference = first.values - second.values[order]
-    return replace(first, name=f"{first.name} - {second.name}", values=difference)
+    scale = _scale_of_differences(first.scale, second.scale)
+    return replace(first, name=f"{first.name} - {second.name}", values=difference, scale=scale)
+
+
+def _scale_of_differences(first: Scale | None, second: Scale | None) -> Scale | None:
+    if first is None or second is None:
+        return None
+    return Scale(first.lowest - second.highest, first.highest - second.lowest)
 
 
 def refuse_zero_variance(name: str, differences: FloatArray) -> None:

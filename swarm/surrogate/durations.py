@@ -11,14 +11,18 @@ from pathlib import Path
 import numpy as np
 
 from swarm.errors import UserError
+from swarm.files import new_csv
 from swarm.geometry import MOVES, Move
 
+MEASURED_DURATIONS = Path(__file__).parent / "data" / "durations.csv"
+"""Measured in the full simulation; comes with the package."""
 COLUMNS = ["kind", "duration_s"]
 HEADING_AT_THE_START = int(Move.E)
 HEADING_AFTER_THE_DRIVE_BACK = int(Move.NW)
 DRIVE_BACK = "drive_back"
 """From the arrival in the goal to the first choice in the start: the rests and the drive between them."""
 MOST_OF_A_KIND = 200
+"""Enough to draw from, and a file of at most 2,200 lines."""
 
 
 def kind_of(heading: int, action: int) -> str:
@@ -28,6 +32,7 @@ def kind_of(heading: int, action: int) -> str:
 
 
 KINDS = (*(f"turn{turn}-{way}" for turn in range(5) for way in ("side", "diagonal")), DRIVE_BACK)
+"""A turn is of 0 to 4 eighths of a circle, either way round."""
 
 
 @dataclass(frozen=True)
@@ -80,17 +85,8 @@ class Durations:
 
 def write_durations(seconds: Mapping[str, list[float]], path: Path, told: str) -> None:
     """A new CSV file with up to 200 durations of each kind; UserError if it is there."""
-    try:
-        with path.open("x", newline="", encoding="utf-8") as file:
-            file.write(f"# {told}\n")
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(COLUMNS)
-            for kind in KINDS:
-                writer.writerows((kind, f"{s:.3f}") for s in seconds.get(kind, [])[:MOST_OF_A_KIND])
-    except FileExistsError as error:
-        raise UserError(f"{path} is there already: choose another name or remove it") from error
-    except OSError as error:
-        raise UserError(f"{path}: cannot be written ({error.strerror})") from error
+    rows = ((kind, f"{s:.3f}") for kind in KINDS for s in seconds.get(kind, [])[:MOST_OF_A_KIND])
+    new_csv(path, [told], COLUMNS, rows)
 
 
 def load_durations(path: Path) -> Durations:

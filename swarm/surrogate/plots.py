@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import StrMethodFormatter
 
-from swarm.analysis.plots import COLOURS, DRAWN_POINTS, save_png
-from swarm.statistics.intervals import pointwise_t_band
+from swarm.analysis.plots import COLOURS, DRAWN_POINTS
+from swarm.files import write_png
+from swarm.statistics.intervals import FEWEST
+from swarm.statistics.plots import draw_band, draw_error_bars, interval_words
 from swarm.statistics.samples import Curves
 
 ERROR_BARS = 15
+"""A curve: none hides another, and those of the conditions stand beside each other."""
 
 
 def draw_side_by_side(
@@ -26,8 +30,8 @@ def draw_side_by_side(
         _draw_error_bars(left, name, curves, COLOURS[place], place)
     for place, (name, curves) in enumerate(family_wise.items()):
         _draw_band(right, name, curves, COLOURS[place])
-    left.set_title(f"as in the paper: {_trials(paper)}, mean and 95 % intervals", fontsize=11)
-    right.set_title(f"{_trials(family_wise)}, mean, its 95 % interval, and the middle half", fontsize=11)
+    left.set_title(f"few, as in the paper: {_trials(paper)}", fontsize=11)
+    right.set_title(_trials(family_wise) + _quartiles(family_wise), fontsize=11)
     for axes in (left, right):
         axes.set_xlabel("moves made by the learner")
         axes.xaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
@@ -43,7 +47,7 @@ def draw_side_by_side(
 def first_trials(curves: dict[str, Curves], count: int) -> dict[str, Curves]:
     """The first few trials of each condition."""
     return {
-        name: Curves(each.name, each.times, each.values[:count], each.replicates[:count])
+        name: replace(each, values=each.values[:count], replicates=each.replicates[:count])
         for name, each in curves.items()
     }
 
@@ -51,7 +55,7 @@ def first_trials(curves: dict[str, Curves], count: int) -> dict[str, Curves]:
 def write_picture(
     paper: dict[str, Curves], family_wise: dict[str, Curves], title: str, note: str, path: Path
 ) -> None:
-    save_png(draw_side_by_side(paper, family_wise, title, note), path)
+    write_png(draw_side_by_side(paper, family_wise, title, note), path)
 
 
 def _drawn(curves: Curves) -> Curves:
@@ -60,27 +64,26 @@ def _drawn(curves: Curves) -> Curves:
 
 def _draw_error_bars(axes: Axes, name: str, curves: Curves, colour: str, place: int) -> None:
     drawn = _drawn(curves)
-    mean = drawn.values.mean(axis=0)
-    axes.plot(drawn.times, mean, color=colour, linewidth=1.2, label=name)
-    if len(drawn.values) > 1:
-        band = pointwise_t_band(drawn.values)
-        shown = slice(place * 3, None, max(1, len(drawn.times) // ERROR_BARS))
-        half = (band.high - band.centre)[shown]
-        axes.errorbar(
-            drawn.times[shown], mean[shown], yerr=half, color=colour, fmt="none", elinewidth=0.8, capsize=2
-        )
+    axes.plot(drawn.times, drawn.values.mean(axis=0), color=colour, linewidth=1.2, label=name)
+    draw_error_bars(axes, drawn, colour, place * 3, max(1, len(drawn.times) // ERROR_BARS))
 
 
 def _draw_band(axes: Axes, name: str, curves: Curves, colour: str) -> None:
     drawn = _drawn(curves)
     axes.plot(drawn.times, drawn.values.mean(axis=0), color=colour, linewidth=1.6, label=name)
-    if len(drawn.values) > 1:
-        band = pointwise_t_band(drawn.values)
-        axes.fill_between(drawn.times, band.low, band.high, color=colour, alpha=0.35, linewidth=0)
+    draw_band(axes, drawn, colour, opacity=0.35)
+    if len(drawn.values) >= FEWEST:
         low, high = np.quantile(drawn.values, [0.25, 0.75], axis=0)
         axes.fill_between(drawn.times, low, high, color=colour, alpha=0.10, linewidth=0)
 
 
 def _trials(curves: dict[str, Curves]) -> str:
-    count = min(len(each.values) for each in curves.values())
-    return "1 trial" if count == 1 else f"{count} trials"
+    return interval_words(_fewest(curves), "trial")
+
+
+def _quartiles(curves: dict[str, Curves]) -> str:
+    return ", and the middle half" if _fewest(curves) >= FEWEST else ""
+
+
+def _fewest(curves: dict[str, Curves]) -> int:
+    return min(len(each.values) for each in curves.values())

@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import polars as pl
 
-from swarm.analysis.learning_curves import interval
+from swarm.analysis.learning_curves import curve_table
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
+from swarm.files import write_table
+from swarm.learning.learner import MOVES_BETWEEN_EVALUATIONS
 from swarm.parallel import workers
-from swarm.statistics.samples import Curves, average_of_learners
+from swarm.statistics.intervals import interval
+from swarm.statistics.samples import Curves, Scale, average_of_learners
 from swarm.surrogate.copies import CopyStore, load_copies
 from swarm.surrogate.durations import Durations, load_durations
-from swarm.surrogate.robots import MOVES_BETWEEN_EVALUATIONS
 from swarm.surrogate.trial import CopiedPath, RobotTrial, TrialOutcome
 
 PAPER_TRIALS = 4
+"""Of figures 25 and 26."""
 THRESHOLD = 12.0
+"""Moves: a third above the shortest path of the paper's arena, 9."""
 SHOWN_AT = (500, 1000, 1500, 2000, 3000, 4000, 6000, 8000, 10_000, 12_000, 15_000)
+"""Moves: closer where curves fall, up to the end of the robots' experiments."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +73,8 @@ def condition_curves(experiment: Experiment, outcomes: Sequence[TrialOutcome]) -
     points = experiment.run.moves // MOVES_BETWEEN_EVALUATIONS
     times = MOVES_BETWEEN_EVALUATIONS * np.arange(1, points + 1, dtype=np.float64)
     replicates = tuple((experiment.run.seed, outcome.trial) for outcome in outcomes)
+    arena = experiment.arena
+    scale = Scale(max(arena.columns, arena.rows) - 1.0, float(experiment.learning.path_length_cap))
     curves = {}
     for condition in dict.fromkeys(robot.group for robot in experiment.learners):
         names = [robot.id for robot in experiment.learners if robot.group == condition]
@@ -75,7 +82,7 @@ def condition_curves(experiment: Experiment, outcomes: Sequence[TrialOutcome]) -
             average_of_learners(np.array([outcome.best_paths[name][:points] for name in names]))
             for outcome in outcomes
         ]
-        curves[condition] = Curves(condition, times, np.array(rows), replicates)
+        curves[condition] = Curves(condition, times, np.array(rows), replicates, scale)
     return curves
 
 
@@ -91,9 +98,9 @@ def _condition_summary(curves: Curves) -> dict[str, Any]:
     at = {}
     for move in (move for move in SHOWN_AT if move in curves.times):
         point = int(np.flatnonzero(curves.times == move)[0])
-        half = None if band is None else round(float(band.high[point] - mean[point]), 2)
-        at[str(move)] = [round(float(mean[point]), 2), half]
-    return {"trials": len(curves.values), "mean_and_half_interval": at, "stays_low_from": _stays_low(curves)}
+        ends = [None, None] if band is None else [float(band.low[point]), float(band.high[point])]
+        at[str(move)] = [round(float(mean[point]), 2), *(end and round(end, 2) for end in ends)]
+    return {"trials": len(curves.values), "mean_and_interval": at, "stays_low_from": _stays_low(curves)}
 
 
 def _stays_low(curves: Curves) -> float | None:
@@ -111,35 +118,13 @@ def _copies_summary(copies: Sequence[CopiedPath]) -> dict[str, Any]:
 
 def write_tables(many: ManyTrials, directory: Path) -> dict[str, str]:
     """`curves.csv`: a row for each condition and point; `trials.csv`: a column for each trial."""
-    files = {"curves": directory / "curves.csv", "trials": directory / "trials.csv"}
-    with files["curves"].open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["condition", "move", "trials", "mean", "low", "high"])
-        for name, curves in many.curves.items():
-            writer.writerows(_curve_rows(name, curves))
-    with files["trials"].open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        trials = [outcome.trial for outcome in many.outcomes]
-        writer.writerow(["condition", "move", *(f"trial_{trial}" for trial in trials)])
-        for name, curves in many.curves.items():
-            columns = zip(curves.times, curves.values.T, strict=True)
-            writer.writerows([name, int(move), *map(float, values)] for move, values in columns)
-    return {name: str(path) for name, path in files.items()}
+    tables = {
+        "curves": curve_table(many.curves).with_columns(pl.col("mean", "low", "high").round(4)),
+        "trials": pl.concat(_trial_columns(curves) for curves in many.curves.values()),
+    }
+    return {name: str(write_table(table, directory / f"{name}.csv")) for name, table in tables.items()}
 
 
-def _curve_rows(name: str, curves: Curves) -> list[list[Any]]:
-    mean, band = curves.values.mean(axis=0), interval(curves)
-    return [
-        [
-            name,
-            int(move),
-            len(curves.values),
-            round(float(mean[point]), 4),
-            *(
-                ("", "")
-                if band is None
-                else (round(float(band.low[point]), 4), round(float(band.high[point]), 4))
-            ),
-        ]
-        for point, move in enumerate(curves.times)
-    ]
+def _trial_columns(curves: Curves) -> pl.DataFrame:
+    place = {"condition": [curves.name] * len(curves.times), "move": curves.times.astype(np.int64)}
+    return pl.DataFrame(place | {f"trial_{trial}": row for trial, row in enumerate(curves.values)})

@@ -12,6 +12,7 @@ import json
 import os
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -62,7 +63,8 @@ def measure(robots: int, processes: int, moves: int, ticks_per_exchange: int = 2
         experiment = Experiment.load(file)
         watch = Watch(experiment, Console(stderr=True, quiet=True))
         run_directory = RunDirectory.create(Path(directory) / "run", experiment.run.name)
-        Run(experiment, file, run_directory, simulated(experiment, None, watch.warn), [0], watch).run()
+        environment = partial(simulated, experiment, None, watch.warn)
+        Run(experiment, file, run_directory, environment, [0], watch).run()
     (t0_s, wall0_s, cpu0), (t1_s, wall1_s, cpu1) = watch.looks[0], watch.looks[-1]
     ticks = (t1_s - t0_s) / TICK_S
     used = {name: 1e6 * (cpu1[name] - cpu0[name]) / ticks for name in cpu1}

@@ -23,9 +23,10 @@ from pathlib import Path
 from statistics import median
 
 from server.hubs.lockstep import LockstepHub
-from server.processes.cpu_affinity import available_cores, keeping_to, spread
+from server.processes.cpu_affinity import keeping_to, spread
 from server.processes.environment import socket_endpoint
 from server.processes.supervisor import ProcessSpec, Supervisor
+from swarm.parallel import available_cores
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import LockstepNode, patient
 from swarm.runtime.zenoh_session import Session, SessionSettings

@@ -31,12 +31,17 @@ LAB = (
 REFUSE_LAB = f"""
 import sys
 
-class Refuse:
-    def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in {LAB!r}:
-            raise ModuleNotFoundError(f"No module named {{name!r}} in a base install", name=name)
+class WithoutLab:
+    def __init__(self, finder):
+        self._finder = finder
 
-sys.meta_path.insert(0, Refuse())
+    def __getattr__(self, name):
+        return getattr(self._finder, name)
+
+    def find_spec(self, name, *places):
+        return None if name.partition(".")[0] in {LAB!r} else self._finder.find_spec(name, *places)
+
+sys.meta_path[:] = map(WithoutLab, sys.meta_path)
 """
 BASE_INSTALL = f"{REFUSE_LAB}\nimport runpy\nrunpy.run_module(sys.argv.pop(1), run_name='__main__')\n"
 
@@ -56,6 +61,14 @@ def test_the_base_install_starts_the_agent_and_the_bridge() -> None:
         done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
         assert "EXPERIMENT.toml" in done.stdout
+
+
+def test_the_base_install_says_what_the_server_needs() -> None:
+    command = [sys.executable, "-c", BASE_INSTALL, "server", "experiment.toml"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert len(done.stderr.splitlines()) == 1
+    assert done.stderr.endswith("install it with pip install 'swarm-runtime[lab]'\n")
 
 
 def test_the_base_install_runs_an_agent_for_ticks(tmp_path: Path) -> None:

@@ -1,23 +1,19 @@
-"""Who may import whom, read off the source."""
+"""What the source may not do; who may import whom is held by the contracts in pyproject.toml."""
 
 from __future__ import annotations
 
 import ast
+import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
-
-import pytest
 
 from tests.support.swarm_runs import ROOT
 
 LAYERS = ("swarm", "robot_agent", "tracker_bridge", "server")
-ALLOWED = {
-    "swarm": {"swarm"},
-    "robot_agent": {"swarm", "robot_agent"},
-    "tracker_bridge": {"swarm", "tracker_bridge"},
-    "server": {"swarm", "server"},
-}
 SLEEP = "sleep"
+LINT_IMPORTS = "from importlinter.cli import lint_imports_command; lint_imports_command()"
 
 
 def sources(folder: str) -> list[Path]:
@@ -40,64 +36,6 @@ def name_of(path: Path) -> str:
     return path.relative_to(ROOT).as_posix()
 
 
-@pytest.mark.parametrize("layer", LAYERS)
-def test_layers_import_only_what_they_may(layer: str) -> None:
-    files = sources(layer)
-    assert len(files) > 3
-    for path in files:
-        ours = {module.split(".")[0] for module in imported(path)} & {*LAYERS, "tests"}
-        assert ours <= ALLOWED[layer], f"{name_of(path)} imports {ours - ALLOWED[layer]}"
-
-
-def importers(package: str) -> set[str]:
-    return {
-        name_of(path)
-        for layer in LAYERS
-        for path in sources(layer)
-        if any(module.split(".")[0] == package for module in imported(path))
-    }
-
-
-def test_zenoh_is_imported_by_the_bus_alone() -> None:
-    assert importers("zenoh") == {"swarm/runtime/zenoh_session.py"}
-
-
-def test_mcap_is_imported_by_the_recorder_and_the_log_reader_alone() -> None:
-    assert importers("small_mcap") == {"swarm/logs/mcap_writer.py"}
-    readers = importers("mcap")
-    assert readers
-    assert all(name.startswith("swarm/logs/") for name in readers)
-
-
-def test_the_learning_rules_know_nothing_of_the_wire() -> None:
-    for path in sources("swarm/learning"):
-        wire = {"swarm.runtime", "swarm.messages", "google"}
-        assert not wire & {".".join(module.split(".")[:2]) for module in imported(path)}, name_of(path)
-
-
-def reached_from(module: str) -> set[str]:
-    """Our own modules that a module imports, by itself or through others."""
-    reached: set[str] = set()
-    waiting = [module]
-    while waiting:
-        path = ROOT / f"{waiting.pop().replace('.', '/')}.py"
-        if path.exists() and name_of(path) not in reached:
-            reached.add(name_of(path))
-            waiting += imported(path)
-    return reached
-
-
-def test_the_agent_does_not_know_whether_it_is_simulated() -> None:
-    """Simulation is one more driver: nothing that the loop is made of reaches it."""
-    reached = reached_from("robot_agent.agent")
-    assert {
-        "robot_agent/navigation/motion.py",
-        "robot_agent/drivers/interfaces.py",
-        "swarm/geometry.py",
-    } <= reached
-    assert not [name for name in reached if "sim" in Path(name).stem.split("_")]
-
-
 def test_only_clocks_sleep() -> None:
     sleepers = {
         name_of(path)
@@ -112,6 +50,19 @@ def test_only_clocks_sleep() -> None:
 def test_tests_use_the_real_thing() -> None:
     for path in sources("tests"):
         assert "unittest.mock" not in set(imported(path)), name_of(path)
+
+
+def test_the_contracts_name_an_arrow_that_breaks_them(tmp_path: Path) -> None:
+    """A copy of the source in which a driver's neighbour imports Zenoh."""
+    for folder in LAYERS:
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    (tmp_path / "robot_agent" / "secret.py").write_text("import server.trial\nimport zenoh\n")
+    command = [sys.executable, "-c", LINT_IMPORTS, "--no-cache"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 1, done.stderr
+    assert "robot_agent.secret -> server.trial" in done.stdout
+    assert "robot_agent.secret -> zenoh" in done.stdout
 
 
 def test_nothing_is_pickled() -> None:

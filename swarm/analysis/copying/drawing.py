@@ -16,7 +16,9 @@ Point = tuple[float, float]
 LANE = 0.09
 """In cells: arrows keep so far to the right, so that a way there and the way back are both seen."""
 LEAST_SIDE = 6.0
+"""In cells: a single move would else fill the picture."""
 MARGIN = 0.8
+"""In cells: room for an arrow's head."""
 GRID = "#e6e6e6"
 FRAME = "#d0d0d0"
 

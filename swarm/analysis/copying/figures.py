@@ -24,9 +24,16 @@ from swarm.analysis.copying.paths import LoggedPath, Seen
 from swarm.analysis.copying.ratios import plot_ratios
 from swarm.analysis.copying.summary import Copying, chosen_copies, least_enacted, most_enacted
 from swarm.analysis.plots import COLOURS, GREY
+from swarm.markdown import counted
 
 PERFECT, WRONG, UNJUDGED = COLOURS[0], COLOURS[1], GREY
+"""Blue, orange and grey: told apart by everybody."""
 CAPTION_LETTERS, CAPTION_LINES = 44, 2
+"""What fits under half of an original with its copy."""
+NOTE_LETTERS_AN_INCH = 15
+"""Of a note's small letters."""
+PATH_WIDTH_IN, NOTE_SPACE_IN = 2.9, 0.4
+"""Inches: of each path, and beside them all."""
 _SEEN = "#1a1a1a"
 _R_NOTE = "Moves are drawn from the ring on, a cell a move. R as in equation 4, after the last replay."
 _SEEN_NOTE = (
@@ -71,18 +78,16 @@ _WITH = {
 
 def plot_paths(paths: Sequence[LoggedPath], title: str) -> Figure:
     """Remembered paths side by side with their R and replays."""
-    figure = Figure(figsize=(max(2.9 * len(paths), 5.8), 4.4), layout="constrained")
+    figure = Figure(figsize=(PATH_WIDTH_IN * len(paths) + NOTE_SPACE_IN, 4.4), layout="constrained")
     figure.suptitle(title, fontsize=13, fontweight="bold", x=0.01, ha="left")
-    columns = figure.subplots(1, max(len(paths), 2), squeeze=False)[0]
+    columns = figure.subplots(1, len(paths), squeeze=False)[0]
     lines = [places(path.moves) for path in paths]
     side = max(square_around(line).side for line in lines)
-    for axes, path, line in zip(columns, paths, lines, strict=False):
+    for axes, path, line in zip(columns, paths, lines, strict=True):
         draw_cells(axes, Square(square_around(line).middle, side))
         draw_moves(axes, path.moves, [colour_of(path)] * len(path.moves))
         _caption(axes, path)
-    for axes in columns[len(paths) :]:
-        axes.set_axis_off()
-    figure.supxlabel(_R_NOTE, x=0.01, ha="left", fontsize=8.5, color=GREY)
+    figure.supxlabel(_wrapped_note(_R_NOTE, figure), x=0.01, ha="left", fontsize=8.5, color=GREY)
     return figure
 
 
@@ -100,7 +105,7 @@ def _small(axes: Axes) -> dict[str, Any]:
 
 
 def _replays(path: LoggedPath) -> str:
-    return f"{path.replays:,} {'replay' if path.replays == 1 else 'replays'}"
+    return counted(path.replays, "replay")
 
 
 def _name(path: LoggedPath) -> str:
@@ -109,13 +114,14 @@ def _name(path: LoggedPath) -> str:
 
 def plot_copies(paths: Sequence[LoggedPath], copying: Copying) -> Figure:
     """What the demonstrator really did on the left, what was perceived on the right, two copies a row."""
-    rows = (len(paths) + 1) // 2
-    figure = Figure(figsize=(11.6, 0.75 + 3.7 * rows), layout="constrained")
+    columns = min(len(paths), 2)
+    rows = -(-len(paths) // columns)
+    figure = Figure(figsize=(5.8 * columns, 0.75 + 3.7 * rows), layout="constrained")
     figure.suptitle("Original and perceived copy", fontsize=13, fontweight="bold", x=0.01, ha="left")
-    cases = figure.subfigures(rows, 2, squeeze=False, wspace=0.04).ravel()
+    cases = figure.subfigures(rows, columns, squeeze=False, wspace=0.04).ravel()
     for case, path in zip(cases, paths, strict=False):
         _draw_case(case, path, copying.seen.get(path, ()))
-    figure.supxlabel(_SEEN_NOTE, x=0.01, ha="left", fontsize=8.5, color=GREY)
+    figure.supxlabel(_wrapped_note(_SEEN_NOTE, figure), x=0.01, ha="left", fontsize=8.5, color=GREY)
     return figure
 
 
@@ -134,6 +140,11 @@ def _draw_case(case: SubFigure, path: LoggedPath, seen: Seen) -> None:
     left.set_xlabel(_wrapped(f"done: {moves_text(real)}"), fontsize=9, loc="left")
     copy = [f"perceived: {moves_text(copied)}", f"remembered: {moves_text(path.moves)}"]
     right.set_xlabel("\n".join(map(_wrapped, copy)), fontsize=9, loc="left")
+
+
+def _wrapped_note(text: str, figure: Figure) -> str:
+    """In lines that are no wider than the figure."""
+    return "\n".join(textwrap.wrap(text, int(figure.get_figwidth() * NOTE_LETTERS_AN_INCH)))
 
 
 def _wrapped(text: str) -> str:

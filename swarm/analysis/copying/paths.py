@@ -10,6 +10,7 @@ from typing import Any
 import polars as pl
 
 from swarm.analysis.copying.errors import ErrorKind, contains, error_kind
+from swarm.geometry import Move
 from swarm.learning.alignment import edit_distance
 
 OF_PATH = ["log", "robot", "path"]
@@ -60,9 +61,9 @@ class LoggedPath:
 
     def row(self) -> dict[str, Any]:
         """As a line of the table `copied_paths`."""
-        moves = {"moves": list(self.moves), "real": self.real and list(self.real)}
+        moves = {"moves": _names(self.moves), "real": _names(self.real), "copied": _names(self.copied)}
         error = {"error": self.error, "edit_distance": self.edit_distance, "really_made": self.really_made}
-        return vars(self) | moves | {"copied": self.copied and list(self.copied)} | error
+        return vars(self) | moves | error
 
 
 def read_paths(tables: Mapping[str, Path]) -> list[LoggedPath]:
@@ -80,15 +81,29 @@ def read_paths(tables: Mapping[str, Path]) -> list[LoggedPath]:
 
 def path_table(paths: Sequence[LoggedPath]) -> pl.DataFrame:
     """A row for each path."""
-    moves = pl.List(pl.Int64)
-    schema: dict[str, Any] = {
-        "moves": moves,
-        "real": moves,
-        "copied": moves,
-        "error": pl.String,
-        "edit_distance": pl.Int64,
-    }
-    return pl.DataFrame([path.row() for path in paths], schema_overrides=schema, infer_schema_length=None)
+    return pl.DataFrame([path.row() for path in paths], schema=_SCHEMA)
+
+
+_SCHEMA: dict[str, Any] = {
+    "log": pl.String,
+    "condition": pl.String,
+    "robot": pl.String,
+    "seed": pl.Int64,
+    "trial": pl.Int64,
+    "path": pl.Int64,
+    "visit": pl.Int64,
+    "moves": pl.List(pl.String),
+    "source": pl.String,
+    "known_from": pl.Int64,
+    "known_for": pl.Int64,
+    "replays": pl.Int64,
+    "ratio": pl.Float64,
+    "real": pl.List(pl.String),
+    "copied": pl.List(pl.String),
+    "error": pl.String,
+    "edit_distance": pl.Int64,
+    "really_made": pl.Boolean,
+}
 
 
 def _with_moves(paths: pl.DataFrame, moves: pl.DataFrame) -> pl.DataFrame:
@@ -112,22 +127,30 @@ def _judged(tables: Mapping[str, Path]) -> pl.DataFrame:
     return errors.select(*OF_PATH, *_NO_MOVES).unique(OF_PATH, keep="last", maintain_order=True)
 
 
-_NO_MOVES = {"true_moves": pl.List(pl.Int64), "copied_moves": pl.List(pl.Int64)}
+_NO_MOVES = {"true_moves": pl.List(pl.String), "copied_moves": pl.List(pl.String)}
 
 
 def _path(row: Mapping[str, Any]) -> LoggedPath:
     origin = {name: row[name] for name in ("log", "condition", "robot", "seed", "trial", "path", "visit")}
     return LoggedPath(
         **origin,
-        moves=tuple(row["moves"]),
+        moves=_moves(row["moves"]),
         source=row["source"],
         known_from=row["known_from"],
         known_for=row["last_move"] - row["known_from"],
         replays=row["replays"] or 0,
         ratio=FIRST_R if row["ratio"] is None else row["ratio"],
-        real=None if row["true_moves"] is None else tuple(row["true_moves"]),
-        copied=None if row["copied_moves"] is None else tuple(row["copied_moves"]),
+        real=None if row["true_moves"] is None else _moves(row["true_moves"]),
+        copied=None if row["copied_moves"] is None else _moves(row["copied_moves"]),
     )
+
+
+def _moves(names: Sequence[str]) -> tuple[int, ...]:
+    return tuple(int(Move[name]) for name in names)
+
+
+def _names(moves: Sequence[int] | None) -> list[str] | None:
+    return None if moves is None else [Move(move).name for move in moves]
 
 
 Seen = tuple[tuple[float, float], ...]

@@ -18,9 +18,11 @@ from swarm.analysis.plots import GREY
 from swarm.statistics.samples import FloatArray
 
 ROBOTS_SHOWN = 4
+"""So many rows fill a page."""
 LABEL_APART = 0.062
 """Of the axis's height: labels closer than that would overlap."""
 TOP = 1.04
+"""A little room above the highest R, which is 1."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 from swarm.analysis.copying.drawing import moves_text
 from swarm.analysis.copying.paths import LoggedPath
 from swarm.analysis.copying.summary import Copying
-from swarm.markdown import table, text_number
+from swarm.markdown import counted, table, text_number
 
 PICTURES = {
     "most_enacted.png": "Paths enacted most often",
@@ -21,6 +21,7 @@ _PAPER_AXES = (
     "below, its figures 27 to 29 for this run."
 )
 _SHOWN = 20
+"""Rows of a table that is read, not searched."""
 _EXPLAINED = (
     "A copy is judged whole: all the moves that were perceived against all that the demonstrator really made "
     "meanwhile. Only a stretch of it is remembered: even a wrong copy may give a path that was really made."
@@ -48,7 +49,7 @@ def _visits(copying: Copying) -> str:
     if not copying.visits:
         return ""
     vain = sum(copying.failures.values())
-    text = f"{copying.visits} visits, {vain} of which taught nothing."
+    text = f"{counted(copying.visits, 'visit')}, {vain} of which taught nothing."
     if not vain:
         return text
     rows = [[reason or "no reason given", str(count)] for reason, count in copying.failures.items()]
@@ -104,7 +105,9 @@ def _miscopied(copying: Copying) -> str:
         "replays",
         "R at the end",
     ]
-    text = f"The {min(_SHOWN, len(paths))} most replayed of {len(paths)} miscopied paths."
+    text = "### Miscopied paths"
+    if len(paths) > _SHOWN:
+        text += f"\n\nThe {_SHOWN} most replayed of {len(paths)}."
     return f"{text}\n\n{table(head, _rows(paths[:_SHOWN]))}"
 
 

@@ -15,6 +15,7 @@ from swarm.analysis.copying.errors import ErrorKind
 from swarm.analysis.copying.paths import LoggedPath, Seen, read_paths, seen_positions
 
 SHOWN = 4
+"""So many fit beside each other on a page."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ def _visits(tables: Mapping[str, Path]) -> tuple[int, dict[str, int]]:
     """How many visits ended, and why some taught nothing."""
     if "visits" not in tables:
         return 0, {}
-    done = pl.read_parquet(tables["visits"], glob=False).filter(phase="DONE")
+    done = pl.read_parquet(tables["visits"], glob=False).filter(pl.col("done_t_s").is_not_null())
     vain = Counter(map(reason_kind, done.filter(path=0)["reason"].to_list()))
     return done.height, dict(sorted(vain.items(), key=lambda item: (-item[1], item[0])))
 

@@ -15,12 +15,12 @@ from swarm.paper.claim import (
     NoDifference,
     ShortestPathMoves,
 )
-from swarm.paper.verdicts.curve_tests import LEVEL, CurveTests, compare, compare_samples, effect_between, span
+from swarm.paper.verdicts.curve_tests import CurveTests, compare, compare_samples, effect_between, span
 from swarm.paper.verdicts.evidence import Evidence
 from swarm.paper.verdicts.finding import Finding, Tested, Verdict
 from swarm.paper.verdicts.wording import compared, in_steps
 from swarm.statistics.effect_size import paired_effect_size
-from swarm.statistics.paired_tests import Window
+from swarm.statistics.paired_tests import LEVEL, Window
 from swarm.statistics.samples import Curves, FloatArray, Sample
 from swarm.statistics.survival import CensoredTimes, median_time, restricted_mean_time
 

@@ -9,10 +9,9 @@ import numpy as np
 from swarm.learning.random import spawned_generator
 from swarm.paper.verdicts.finding import Tested
 from swarm.statistics.effect_size import EffectSize, paired_effect_size
-from swarm.statistics.paired_tests import Window, max_t_test, pointwise_t_test, significant_windows
+from swarm.statistics.paired_tests import LEVEL, Window, max_t_test, pointwise_t_test, significant_windows
 from swarm.statistics.samples import BoolArray, Curves, FloatArray, PairingError, Sample, mean_level
 
-LEVEL = 0.05
 BRIDGED_POINTS = 5
 """Gaps in a window that are overlooked: 0.5m of the 20m steps of a run."""
 SHORTEST_POINTS = 3

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from swarm.gridworld.arena import distances
+from swarm.gridworld.arena import shortest_path
 from swarm.gridworld.condition import Condition
 from swarm.paper.results import Results
 from swarm.statistics.samples import Curves
@@ -39,5 +39,4 @@ class Evidence:
 
     def arrivals(self, condition: Condition) -> CensoredTimes:
         """When each run found a shortest path."""
-        shortest = float(distances(condition.arena)[condition.arena.grid.start])
-        return times_to_threshold(self.curves(condition), shortest)
+        return times_to_threshold(self.curves(condition), shortest_path(condition.arena))

@@ -35,17 +35,18 @@ from swarm.statistics.samples import PairingError
 
 @dataclass(frozen=True)
 class Judged:
-    """A claim with what was found about each of its comparisons."""
+    """A claim about a figure with what was found about each of its comparisons."""
 
+    figure: str
     claim: Claim
     verdict: Verdict
     findings: tuple[Finding, ...]
 
 
-def judge(claim: Claim, evidence: Evidence) -> Judged:
+def judge(figure: str, claim: Claim, evidence: Evidence) -> Judged:
     """Every comparison of a claim, and its verdict."""
     findings = tuple(_found(check, evidence) for check in claim.checks)
-    return Judged(claim, combined([finding.verdict for finding in findings]), findings)
+    return Judged(figure, claim, combined([finding.verdict for finding in findings]), findings)
 
 
 def _found(check: Check, evidence: Evidence) -> Finding:

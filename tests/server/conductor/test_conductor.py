@@ -11,6 +11,7 @@ from google.protobuf.message import Message
 from server.conductor.carrier import SimulatedCarrier
 from server.conductor.conductor import Conductor
 from server.hubs.hub import Batch
+from server.reporter import Reporter
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
 from swarm.errors import RunFailedError
@@ -29,11 +30,12 @@ class Rig:
     def __init__(self, directory: Path) -> None:
         self.said: list[tuple[str, Any]] = []
         experiment = Experiment.load(write_experiment(directory, experiment_text(moves=10)))
-        self.conductor = Conductor(experiment, 3, self._publish, SimulatedCarrier(self._publish))
+        reporter = Reporter(self)
+        self.conductor = Conductor(experiment, 3, reporter, SimulatedCarrier(reporter))
         self.t_ns = 0
         self._sequence = 0
 
-    def _publish(self, topic: Topic[Any], message: Message, robot: str) -> None:
+    def publish(self, topic: Topic[Any], message: Message, robot: str = "") -> None:
         self.said.append((topic.key(robot), message))
 
     def step(self, *heard: tuple[str, bytes]) -> list[Any]:

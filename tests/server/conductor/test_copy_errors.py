@@ -7,6 +7,7 @@ from typing import Any
 from google.protobuf.message import Message
 
 from server.conductor.copy_errors import LAST_MOVE_REPORTED_NS, CopyErrors
+from server.reporter import Reporter
 from swarm.clock import NS_PER_S
 from swarm.geometry import Move
 from swarm.messages import swarm_pb2 as pb
@@ -21,7 +22,10 @@ class Judge:
 
     def __init__(self) -> None:
         self.published: list[tuple[Topic[Any], Message, str]] = []
-        self.errors = CopyErrors({"pupil": "expert"}, lambda *message: self.published.append(message))
+        self.errors = CopyErrors({"pupil": "expert"}, Reporter(self))
+
+    def publish(self, topic: Topic[Any], message: Message, robot: str = "") -> None:
+        self.published.append((topic, message, robot))
 
     def moved(self, arrived_s: float, move: Move, *, robot: str = "expert", blocked: bool = False) -> None:
         message = pb.Move(action=int(move), duration_s=MOVE_S, blocked=blocked)

@@ -10,6 +10,7 @@ from google.protobuf.message import Message
 
 from server.conductor.carrier import SimulatedCarrier
 from server.conductor.visits import REPEAT_NS, Visits
+from server.reporter import Reporter
 from swarm.config.experiment import (
     Experiment,
     LearningSettings,
@@ -40,9 +41,10 @@ class Conducted:
             visits=VisitSettings(every_tracks=every_tracks),
         )
         self.sent: list[tuple[Topic[Any], Message, str]] = []
-        self.visits = Visits(self.experiment, self._publish, SimulatedCarrier(self._publish))
+        reporter = Reporter(self)
+        self.visits = Visits(self.experiment, reporter, SimulatedCarrier(reporter))
 
-    def _publish(self, topic: Topic[Any], message: Message, robot: str) -> None:
+    def publish(self, topic: Topic[Any], message: Message, robot: str = "") -> None:
         self.sent.append((topic, message, robot))
 
     def due(self, t_ns: int = 0) -> list[str]:

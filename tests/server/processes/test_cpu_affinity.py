@@ -6,7 +6,8 @@ import os
 import subprocess
 import sys
 
-from server.processes.cpu_affinity import available_cores, keeping_to, spread
+from server.processes.cpu_affinity import keeping_to, spread
+from swarm.parallel import available_cores
 
 REPORT = "import os; print(sorted(os.sched_getaffinity(0)), os.sched_getscheduler(0))"
 

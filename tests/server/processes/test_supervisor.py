@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import server
 from server.processes.supervisor import ProcessSpec, Supervisor
 from swarm.errors import RunFailedError
 
@@ -74,6 +75,23 @@ def test_an_orderly_end_waits_for_everyone(code: Path, tmp_path: Path) -> None:
         pid = supervisor.pids["a"]
     assert not is_there(pid)
     assert (tmp_path / "output" / "a.log").read_text() == "done\n"
+
+
+def test_nothing_is_imported_from_the_working_directory(
+    code: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "numpy.py").write_text("print('the working directory was imported')")
+    monkeypatch.chdir(tmp_path)
+    with Supervisor([spec(code, "a", "import numpy; print(numpy.pi)")], tmp_path / "output"):
+        pass
+    assert (tmp_path / "output" / "a.log").read_text().startswith("3.14")
+
+
+def test_processes_run_the_modules_of_their_parent(code: Path, tmp_path: Path) -> None:
+    """Tests start the checkout's server, whose processes must not be those of an installation elsewhere."""
+    with Supervisor([spec(code, "a", "import server; print(server.__file__)")], tmp_path / "output"):
+        pass
+    assert (tmp_path / "output" / "a.log").read_text().strip() == server.__file__
 
 
 def test_processes_are_out_of_reach_of_the_terminal(code: Path, tmp_path: Path) -> None:

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from google.protobuf.message import Message
+
 from server.hubs.hub import Batch
 from server.recording.health import Health
+from server.reporter import Reporter
 from swarm.clock import NS_PER_S
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
 from swarm.messages.header import Header, Item
+from swarm.messages.topics import Topic
 
 TICK_NS = NS_PER_S // 10
 
@@ -13,8 +21,13 @@ TICK_NS = NS_PER_S // 10
 class Rig:
     def __init__(self) -> None:
         self.reported: list[tuple[str, str]] = []
-        self.health = Health(lambda name, text: self.reported.append((name, text)))
+        self.health = Health(Reporter(self))
         self._tick = 0
+
+    def publish(self, topic: Topic[Any], message: Message, robot: str = "") -> None:
+        assert (topic, robot) == (topics.SERVER_EVENT, "")
+        assert isinstance(message, pb.Event)
+        self.reported.append((message.name, message.text))
 
     def seconds(self, seconds: int, poses_every: int) -> None:
         """A tick has a pose whenever its number is a multiple, and always a move."""

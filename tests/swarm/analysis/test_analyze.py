@@ -9,6 +9,7 @@ from pathlib import Path
 
 import polars as pl
 import pytest
+import zstandard
 from scipy import stats
 
 from swarm.analysis.analyze import Analysis, Request, analyze
@@ -40,16 +41,27 @@ def table(analysis: Analysis, name: str) -> pl.DataFrame:
     return pl.read_parquet(analysis.files[name])
 
 
-def test_the_curve_is_the_mean_over_trials_with_students_interval(run: Path) -> None:
-    curve = pl.read_csv(analyzed(run).files["curves.csv"]).filter(condition="imitation")
-    assert curve["move"].to_list() == [10, 20, 30, 40]
-    assert curve["trials"].to_list() == [3] * 4
-    values = [80, 60, 100]
-    low, high = stats.t.interval(0.95, 2, loc=80, scale=stats.sem(values))
-    assert curve.row(0, named=True)["mean"] == 80
-    assert math.isclose(curve["low"][0], low)
-    assert math.isclose(curve["high"][0], high)
-    assert curve["low"][3] == curve["high"][3] == 9
+def test_the_curve_is_the_mean_over_trials_with_an_interval_on_the_scale(tmp_path: Path) -> None:
+    firsts = (80, 60, 100, 100, 95)
+    for trial, first in enumerate(firsts):
+        learning_log(tmp_path / f"trial-{trial:03}.mcap", {"imitator": (first, 60 + trial, 9)}, trial)
+    curve = pl.read_csv(analyzed(tmp_path).files["curves.csv"])
+    assert curve["move"].to_list() == [10, 20, 30]
+    assert curve["trials"].to_list() == [5] * 3
+    low, high = stats.t.interval(0.95, 4, loc=87, scale=stats.sem(firsts))
+    assert curve["mean"][0] == 87
+    assert high > 100 > curve["high"][0] > 87
+    assert low > curve["low"][0] > 9, "on the logit's axis the side away from the end of the scale is longer"
+    assert curve["low"][2] == curve["high"][2] == 9
+
+
+def test_too_few_trials_are_shown_one_by_one(run: Path) -> None:
+    analysis = analyzed(run)
+    assert pl.read_csv(analysis.files["curves.csv"])["low"].null_count() == 8
+    assert analysis.as_json()["conditions"]["no-imitation"]["final_of_each_trial"] == [60, 50, 40]
+    report = analysis.files["report.md"].read_text()
+    assert "none; trials: 40.0, 50.0, 60.0" in report
+    assert "of fewer than 5 no interval can be given" in report
 
 
 def test_everything_that_is_promised_is_written(run: Path) -> None:
@@ -57,7 +69,8 @@ def test_everything_that_is_promised_is_written(run: Path) -> None:
     assert analysis.directory == run / "analysis"
     assert all(path.stat().st_size > 0 for path in analysis.files.values())
     assert analysis.files["curves.png"].read_bytes().startswith(b"\x89PNG")
-    assert table(analysis, "curves.parquet").equals(pl.read_csv(analysis.files["curves.csv"]))
+    curves = table(analysis, "curves.parquet")
+    assert curves.equals(pl.read_csv(analysis.files["curves.csv"], schema=curves.schema))
     summary = json.loads((analysis.directory / "summary.json").read_text())
     assert summary == analysis.as_json()
     assert summary["conditions"]["imitation"]["median_moves_to_threshold"] == 30
@@ -196,7 +209,7 @@ def test_a_torn_log_is_analyzed_up_to_the_tear(tmp_path: Path) -> None:
     small.add_curve("loner", range(100, 60, -1))
     data = small.close().read_bytes()
     torn = tmp_path / "torn.mcap"
-    torn.write_bytes(data[: len(data) // 2])
+    torn.write_bytes(data[: data.rindex(zstandard.FRAME_HEADER)])
     analysis = analyzed(torn)
     points = table(analysis, "best_paths").height
     assert points in range(4, 40, 4)
@@ -215,8 +228,8 @@ def test_tables_hold_every_field_and_where_it_comes_from(tmp_path: Path) -> None
     origin = {"seed": 7, "trial": 2, "condition": "no-imitation", "robot": "loner", "epoch": 1, "sequence": 1}
     assert move.items() >= origin.items()
     assert move["publish_t_ns"] == 200_000_000
-    assert (move["action"], move["duration_s"], move["blocked"]) == (3, 2.5, True)
-    assert table(analysis, "paths")["moves"].to_list() == [[1, 1, 0]]
+    assert (move["action"], move["duration_s"], move["blocked"]) == ("SW", 2.5, True)
+    assert table(analysis, "paths")["moves"].to_list() == [["SE", "SE", "E"]]
     event = table(analysis, "events").row(0, named=True)
     assert (event["robot"], event["condition"], event["level"]) == ("server", "", "WARNING")
     assert table(analysis, "poses").height == 0

@@ -22,7 +22,7 @@ from tests.support.small_logs import SmallLog, metadata
 
 SE, E, S, NW = int(Move.SE), int(Move.E), int(Move.S), int(Move.NW)
 PICTURES = ("most_enacted.png", "least_enacted.png", "copies.png", "ratios.png", "curves_paper_axes.png")
-WATCHING = ("visits", "observations", "looks", "smoothed", "segments", "copy_errors")
+WATCHING = ("visit_phases", "visits", "observations", "looks", "smoothed", "segments", "copy_errors")
 
 
 @pytest.mark.parametrize(
@@ -259,7 +259,7 @@ def test_every_path_is_a_row_with_its_fate(analysis: Analysis) -> None:
     assert [row["edit_distance"] for row in rows] == [0, 1, 1, None]
     assert [row["really_made"] for row in rows] == [True, False, True, None]
     assert [(row["known_from"], row["known_for"]) for row in rows] == [(1, 19), (2, 18), (2, 18), (2, 18)]
-    assert rows[1]["moves"] == [SE, SE, S]
+    assert rows[1]["moves"] == ["SE", "SE", "S"]
     assert (rows[3]["source"], rows[3]["visit"], rows[3]["copied"]) == ("given", 0, None)
 
 
@@ -273,7 +273,7 @@ def test_the_seen_positions_are_those_of_the_demonstration_in_cells(analysis: An
 def test_an_observation_is_a_row_and_so_is_every_look_position_and_segment(analysis: Analysis) -> None:
     observations = table(analysis, "observations")
     assert observations["visit"].to_list() == [1, 2, 3, 4, 5]
-    assert observations["window"].to_list()[:2] == [[SE, SE, SE], [SE, SE, S]]
+    assert observations["window"].to_list()[:2] == [["SE", "SE", "SE"], ["SE", "SE", "S"]]
     assert "looks" not in observations.columns
     looks = table(analysis, "looks")
     assert looks["visit"].to_list() == [1] * 4 + [2] * 4 + [3] * 4
@@ -283,7 +283,7 @@ def test_an_observation_is_a_row_and_so_is_every_look_position_and_segment(analy
     assert table(analysis, "smoothed")["x_m"].to_list()[:2] == [0.5, 0.6]
     assert table(analysis, "segments")["length_m"].to_list() == [0.2] * 3
     assert table(analysis, "copy_errors")["robot"].unique().to_list() == ["imitator"]
-    assert table(analysis, "visits")["phase"].to_list() == ["DONE"] * 5
+    assert table(analysis, "visit_phases")["phase"].to_list() == ["DONE"] * 5
 
 
 def test_figures_and_section_are_written(analysis: Analysis) -> None:

@@ -62,14 +62,14 @@ def assert_same(agent: AgentArrays, plain: PlainAgent) -> None:
     remembered = controller.memory.remembered
     assert agent.remembered[0] == len(remembered)
     assert [controller.memory.ratio(path) for path in remembered] == agent.ratios[: len(remembered)].tolist()
-    assert [path.n_replicated for path in remembered] == agent.replicated[: len(remembered)].tolist()
+    assert [path.n_replicated for path in remembered] == agent.n_replicated[: len(remembered)].tolist()
     for stored, length, path in zip(agent.paths, agent.lengths, remembered, strict=False):
         if isinstance(path.path, ObservedPath):
             assert stored[:length].tolist() == list(path.path.moves)
     if controller.replay is None:
-        assert agent.replayed[0] == -1
+        assert agent.replay[0] == -1
     else:
-        assert agent.change[0] == controller.replay.q_change
+        assert agent.q_change[0] == controller.replay.q_change
         assert agent.replay_index[0] == controller.replay.index
 
 

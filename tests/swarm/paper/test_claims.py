@@ -59,7 +59,7 @@ def evidence(folder: Path, curves: dict[Condition, np.ndarray], ratios: np.ndarr
 
 
 def found(check: Check, seen: Evidence) -> Finding:
-    return judge(Claim("fig0", "", (check,)), seen).findings[0]
+    return judge("fig0", Claim("", (check,)), seen).findings[0]
 
 
 @pytest.fixture(scope="module")
@@ -222,3 +222,26 @@ def test_the_verdicts_do_not_depend_on_the_number_of_workers(
 ) -> None:
     again, _ = judge_claims(["fig3", "fig13"], "", runs=12, steps=3000, seed=1, out=tmp_path, jobs=2)
     assert again["claims"] == small_report[0]["claims"]
+
+
+USERS_STUDY = """
+from swarm.gridworld.arena import OPEN_10
+from swarm.gridworld.condition import Condition, GivenPaths, NoTeacher
+from swarm.paper.claim import Better, Claim
+from swarm.paper.conditions import BENEFICIAL
+from swarm.paper.study import Study
+
+def condition(name, teacher):
+    return Condition(name, OPEN_10, teacher, epsilon=0.3, steps=2_000, evaluate_every=10)
+
+def figure():
+    alone, given = condition("alone", NoTeacher()), condition("given", GivenPaths((BENEFICIAL,)))
+    claims = (Claim("A good path helps.", (Better(given, alone),)),)
+    return Study("mine", "Mine", {"a": alone, "b": given}, horizon_steps=2_000, runs=12, claims=claims)
+"""
+
+
+def test_the_claims_of_a_users_study_are_judged(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(USERS_STUDY)
+    result, _ = judge_claims([str(tmp_path / "mine.py")], "", out=tmp_path / "out")
+    assert [(claim["figure"], claim["verdict"]) for claim in result["claims"]] == [("mine", "holds")]

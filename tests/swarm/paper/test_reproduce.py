@@ -23,7 +23,7 @@ from swarm.paper.study import Study
 from swarm.parallel import workers
 from tests.support.swarm_runs import ROOT
 
-SHORT: dict[str, Any] = {"runs": 2, "steps": 2000, "seed": 5}
+SHORT: dict[str, Any] = {"runs": 5, "steps": 2000, "seed": 5}
 
 
 def numbers(results: dict[str, Any]) -> dict[str, Any]:
@@ -49,11 +49,11 @@ def test_a_figure_has_curves_ratios_times_a_table_and_a_plot(reference: tuple[Pa
     assert curve["low"][50] <= curve["mean"][50] <= curve["high"][50]
     assert figure["R"]["β = 0.3"]["5 x SE"]["mean"] == 1.0  # a fixed p_imitate
     assert figure["seconds"] > 0
-    assert figure["steps_per_s"] == pytest.approx(8 * 2000 / figure["seconds"], rel=0.01)
-    table = pl.read_parquet(out / "2-runs" / "fig3.parquet")
+    assert figure["steps_per_s"] == pytest.approx(20 * 2000 / figure["seconds"], rel=0.01)
+    table = pl.read_parquet(out / "5-runs" / "fig3.parquet")
     assert table.shape == (800, 13)
     assert table["mean"].to_list()[:200] == curve["mean"]
-    assert matplotlib.image.imread(out / "2-runs" / "fig3.png").shape[2] == 4
+    assert matplotlib.image.imread(out / "5-runs" / "fig3.png").shape[2] == 4
 
 
 @pytest.mark.parametrize("scheduler", ["processes", "dask"])

@@ -13,7 +13,7 @@ from swarm.errors import RunFailedError, UserError
 from swarm.files import write_whole
 from swarm.gridworld.condition import Condition
 from swarm.gridworld.simulation import Trace
-from swarm.paper.catalogue import chosen_names, figure_names, load_claims, load_figure
+from swarm.paper.catalogue import FIGURES, chosen_names, load_figure
 from swarm.paper.claim import Better
 from swarm.paper.conditions import COPYING_EACH_OTHER, NO_IMITATION, SMALL_NO_IMITATION
 from swarm.paper.progress import TimeLeft, in_words
@@ -35,7 +35,7 @@ def test_a_figure_has_many_names(word: str) -> None:
 
 
 def test_all_figures_once_and_in_order() -> None:
-    assert figure_names() == [f"fig{number}" for number in range(1, 22)]
+    assert list(FIGURES) == [f"fig{number}" for number in range(1, 22)]
     assert chosen_names(["fig5", "all", "5"])[:2] == ["fig5", "fig1"]
     assert len(chosen_names(["all", "all"])) == 21
 
@@ -57,15 +57,15 @@ def test_an_unknown_figure_names_the_nearest(word: str, hint: str) -> None:
         [load_figure(name) for name in chosen_names([word])]
 
 
-def test_each_file_describes_the_figure_of_its_number() -> None:
-    figures = {name: load_figure(name) for name in figure_names()}
+def test_each_name_means_the_figure_of_its_number() -> None:
+    figures = {name: load_figure(name) for name in FIGURES}
     assert [figure.name for figure in figures.values()] == list(figures)
     drawings = [name for name, figure in figures.items() if isinstance(figure, Drawing)]
     assert drawings == ["fig1", "fig2", "fig4", "fig10", "fig11", "fig13"]
 
 
 def all_conditions() -> list[Condition]:
-    studies = [figure for name in figure_names() if isinstance(figure := load_figure(name), Study)]
+    studies = [figure for name in FIGURES if isinstance(figure := load_figure(name), Study)]
     return [condition for study in studies for condition in study.series.values()]
 
 
@@ -85,22 +85,22 @@ def test_the_papers_readings_are_those_of_every_condition() -> None:
         )
 
 
-def test_claims_are_about_the_figure_of_their_file_and_compare_what_exists() -> None:
+def test_claims_compare_what_exists() -> None:
     known = {condition.name for condition in all_conditions()}
-    for name in figure_names():
-        for claim in load_claims([name]):
-            assert claim.figure == name
+    for name in FIGURES:
+        for claim in load_figure(name).claims:
             for check in claim.checks:
                 if isinstance(check, Better):
                     assert {check.better.name, check.worse.name} <= known
 
 
 def test_the_claims_that_must_be_covered_are() -> None:
-    figures = {claim.figure for claim in load_claims(figure_names())}
+    figures = {name for name in FIGURES if load_figure(name).claims}
     assert figures >= {f"fig{number}" for number in (3, 5, 6, 7, 8, 9, 12, 14, 15, 16, 17, 18, 19, 20, 21)}
     until = [
         check.end_step
-        for claim in load_claims(["fig12", "fig15", "fig16"])
+        for name in ("fig12", "fig15", "fig16")
+        for claim in load_figure(name).claims
         for check in claim.checks
         if isinstance(check, Better)
     ]

@@ -15,7 +15,7 @@ from swarm.statistics.intervals import (
     weighted_iqm,
     weighted_mean,
 )
-from swarm.statistics.samples import Curves, Sample, area_under_curve, average_of_learners, mean_level
+from swarm.statistics.samples import Curves, Sample, Scale, average_of_learners, mean_level
 
 
 def random_walks(seed: int, replicates: int, points: int) -> np.ndarray:
@@ -53,6 +53,37 @@ def test_the_pointwise_band_is_scipys_t_interval() -> None:
     interval = stats.ttest_1samp(values, 0).confidence_interval(0.95)
     np.testing.assert_allclose(band.low, interval.low)
     np.testing.assert_allclose(band.high, interval.high)
+
+
+SCALE = Scale(9, 100)
+
+
+def test_a_band_stays_inside_its_scale_and_holds_the_mean() -> None:
+    values = np.random.default_rng(13).choice([9.0, 10.0, 100.0], size=(6, 50))
+    for band in (
+        pointwise_t_band(values, SCALE),
+        simultaneous_band(values, np.random.default_rng(1), SCALE),
+        bootstrap_bands(values, np.random.default_rng(1), weighted_iqm, SCALE)[1],
+    ):
+        assert np.all((band.low >= 9) & (band.low <= band.centre))
+        assert np.all((band.high <= 100) & (band.high >= band.centre))
+
+
+def test_far_from_the_ends_the_scale_changes_little() -> None:
+    values = np.random.default_rng(14).normal(50, 1, size=(30, 1))
+    free, bounded = pointwise_t_band(values), pointwise_t_band(values, Scale(0, 100))
+    np.testing.assert_allclose(bounded.errors, free.errors, rtol=0.01)
+
+
+def test_on_the_scale_the_interval_holds_a_skewed_truth_more_often_than_students() -> None:
+    """Two kinds of trial, 9 and 100 moves, of which a fifth are the long ones."""
+    rng, truth = np.random.default_rng(15), 0.8 * 9 + 0.2 * 100
+    values = rng.choice([9.0, 100.0], p=[0.8, 0.2], size=(20, 4000))
+    held = [
+        float(np.mean((band.low <= truth) & (truth <= band.high)))
+        for band in (pointwise_t_band(values), pointwise_t_band(values, SCALE))
+    ]
+    assert held[0] < 0.93 < held[1]
 
 
 def covers(band_low: np.ndarray, band_high: np.ndarray) -> bool:
@@ -114,9 +145,8 @@ def test_one_replicate_has_no_interval() -> None:
         pointwise_t_band(np.ones((1, 3)))
 
 
-def test_the_area_under_known_curves() -> None:
+def test_the_level_of_known_curves() -> None:
     curves = Curves("ramp", np.array([0.0, 1, 3]), np.array([[0.0, 1, 3], [2, 2, 2]]), (0, 1))
-    np.testing.assert_allclose(area_under_curve(curves).values, [4.5, 6.0])
     np.testing.assert_allclose(mean_level(curves).values, [4 / 3, 2.0])
 
 

@@ -75,7 +75,7 @@ def test_a_store_is_read_as_it_was_written(tmp_path: Path) -> None:
 
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
     (tmp_path / "copies.csv").write_text("mine")
-    with pytest.raises(UserError, match="is there already"):
+    with pytest.raises(UserError, match="exists already"):
         write_copies([], tmp_path / "copies.csv", [])
 
 

@@ -20,6 +20,7 @@ from swarm.surrogate.durations import (
     write_durations,
 )
 from tests.conftest import SmallRun
+from tests.support.swarm_runs import experiment_text, run_server, write_experiment
 
 
 @pytest.mark.parametrize(
@@ -73,11 +74,18 @@ def test_a_log_is_measured(small_run: SmallRun) -> None:
     assert set(found) <= set(KINDS)
 
 
+def test_the_grid_is_that_of_the_log(tmp_path: Path) -> None:
+    """Six drives of three SE moves each end in the goal of a grid of four by four."""
+    experiment = write_experiment(tmp_path, experiment_text(moves=20, extra="columns = 4\nrows = 4"))
+    run_server(experiment, tmp_path / "run")
+    assert measured_in([tmp_path / "run"])["drive_back"]
+
+
 def test_stored_durations_are_drawn(tmp_path: Path) -> None:
     write_durations({kind: [1.5, 2.5] for kind in KINDS}, tmp_path / "d.csv", "how")
     durations, rng = load_durations(tmp_path / "d.csv"), np.random.default_rng(1)
     assert {durations.drawn("drive_back", rng) for _ in range(50)} == {1.5, 2.5}
-    with pytest.raises(UserError, match="is there already"):
+    with pytest.raises(UserError, match="exists already"):
         write_durations({}, tmp_path / "d.csv", "how")
 
 

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from swarm.cli.durations import DURATIONS
-from swarm.cli.trials import COPIES
 from swarm.config.experiment import Experiment
+from swarm.surrogate.copies import STORED_COPIES
+from swarm.surrogate.durations import MEASURED_DURATIONS
 from swarm.surrogate.trials import run_trials, summary
 from tests.conftest import SmallRun
 from tests.support.swarm_runs import ROOT
@@ -40,7 +40,7 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 def test_imitating_an_expert_pays(result: dict[str, Any]) -> None:
     """Figure 25's effect at move 1,000, in six trials."""
-    at = {name: result["conditions"][name]["mean_and_half_interval"]["1000"] for name in CONDITIONS}
+    at = {name: result["conditions"][name]["mean_and_interval"]["1000"] for name in CONDITIONS}
     assert at["imitation"][0] < 40 < 75 < at["no-imitation"][0]
     assert 30 < result["conditions"]["copies"]["remembered"] <= 60, "ten of each trial, if it gets that far"
 
@@ -80,8 +80,8 @@ def test_too_few_moves_are_refused(tmp_path: Path) -> None:
 
 def test_the_number_of_jobs_changes_nothing() -> None:
     experiment = Experiment.load(EXPERT).changed(moves=200)
-    alone = run_trials(experiment, COPIES, DURATIONS, 3, jobs=1)
-    shared = run_trials(experiment, COPIES, DURATIONS, 3, jobs=2)
+    alone = run_trials(experiment, STORED_COPIES, MEASURED_DURATIONS, 3, jobs=1)
+    shared = run_trials(experiment, STORED_COPIES, MEASURED_DURATIONS, 3, jobs=2)
     assert alone.outcomes == shared.outcomes
     assert summary(alone) == summary(shared)
 
