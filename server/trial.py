@@ -31,6 +31,8 @@ class TrialResult:
     bad_messages: int
     unknown_keys: dict[str, int]
     oversized: dict[str, int]
+    """Keys with messages that were too large to be logged; `swarm check` counts them as missing."""
+    disk_error: str
     slowest_keys: dict[str, float]
 
 
@@ -86,6 +88,7 @@ class Trial:
             bad_messages=self._conductor.bad_messages,
             unknown_keys=self._recorder.unknown_keys,
             oversized=self._recorder.oversized,
+            disk_error=self._recorder.disk_error,
             slowest_keys=self._health.lowest_share,
         )
 

@@ -69,12 +69,14 @@ class Recorder:
             if name not in self._channels:
                 self._channels[name] = self._registered(key, header.epoch)
             channel = self._channels[name]
-            if channel is None or len(payload) > MAX_MESSAGE_BYTES:
-                self._leave_out(key, channel is not None)
+            if channel is None:
+                self._leave_out(key)
+                continue
+            self._last[name] = sequence = header.sequence & 0xFFFFFFFF
+            if len(payload) > MAX_MESSAGE_BYTES:
+                self.oversized[key] = self.oversized.get(key, 0) + 1
             else:
-                sequence = header.sequence & 0xFFFFFFFF
                 self._writer.add_message(channel, batch.t_ns, payload, header.t_ns, sequence)
-                self._last[name] = sequence
                 self.messages += 1
         if self._monotonic_s() >= self._due_s:
             self._lay_down()
@@ -94,6 +96,11 @@ class Recorder:
         """End the chunk and hand everything to the operating system: a killed server loses none of it."""
         self._writer.end_chunk()
         self._hand_over()
+
+    @property
+    def disk_error(self) -> str:
+        """Why the disk could not take the log; empty if it could."""
+        return str(self._sync.failure or "")
 
     def end(self, state: str, reason: str, accounts: Mapping[Sender, int] | None) -> None:
         """Write how the trial ended, and what every sender has sent by its own account.
@@ -140,10 +147,8 @@ class Recorder:
         about = {"epoch": str(epoch), "robot": robot, "delivery": topic.delivery.value}
         return self._channel(key, topic.message, about)
 
-    def _leave_out(self, key: str, oversized: bool) -> None:
-        if oversized:
-            self.oversized[key] = self.oversized.get(key, 0) + 1
-        elif topic_of(key) is None:
+    def _leave_out(self, key: str) -> None:
+        if topic_of(key) is None:
             self.unknown_keys[key] = self.unknown_keys.get(key, 0) + 1
 
     def _channel(self, key: str, message: type[Message], about: dict[str, str]) -> int:

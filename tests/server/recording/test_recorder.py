@@ -173,7 +173,9 @@ def test_what_is_too_large_is_refused_counted_and_costs_nothing_else(tmp_path: P
     recorder = Recorder(tmp_path / "log.mcap", ABOUT)
     item = Item("robot/a/event", Header(1, 2, 0), bytes(MAX_MESSAGE_BYTES + 1))
     recorder.write(Batch(1000, [pose_item(1), item, pose_item(2)]))
+    recorder.end("complete", "", None)
     recorder.close()
+    assert ending_of(read(recorder.path).metadata).sent["robot/a/event", 1] == 2, "it is missing"
     assert recorder.oversized == {"robot/a/event": 1}
     assert read(recorder.path).messages == recorder.messages == 2
 
