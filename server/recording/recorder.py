@@ -125,7 +125,7 @@ class Recorder:
     def _lay_down(self) -> None:
         """Put the open chunk where it will stand, as it is now; what is written next overwrites it."""
         self._due_s = self._monotonic_s() + LAID_DOWN_EVERY_S
-        self._laid_down_end = self._writer.lay_down()
+        self._laid_down_end = max(self._laid_down_end, self._writer.lay_down())
 
     def _hand_over(self) -> None:
         """Leave nothing behind the last record: a chunk that was laid down may have been packed worse."""
