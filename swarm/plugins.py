@@ -1,7 +1,8 @@
 """Which drivers and tracking systems there are: those that ship, and those of other installed packages.
 
 A package of somebody's own joins by an entry point in a group. What ships is named here, so that an
-updated checkout finds it without being installed anew; a name that ships cannot be taken. Nothing is imported to know the names.
+updated checkout finds it without being installed anew; a name that ships cannot be taken. Nothing is
+imported to know the names.
 """
 
 from __future__ import annotations

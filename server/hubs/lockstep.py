@@ -146,11 +146,15 @@ class LockstepHub:
         own, self._own = self._own, []
         return Batch(self.t_ns, own)
 
-    def finish(self) -> None:
-        """End every process's ticks."""
+    def finish(self) -> Batch:
+        """End every process's ticks. What they had to say came with their answers."""
         end = TICK.pack(self.number + 1, self.t_ns, self._tick_ns, 0)
         for publisher in self._publishers.values():
             publisher.put(end)
+        return Batch(self.t_ns, [])
+
+    def accounts(self) -> None:
+        """Every answer holds all that its process has sent since the one before."""
 
     def _readers_of(self, key: str) -> tuple[str, ...]:
         if key not in self._readers:
