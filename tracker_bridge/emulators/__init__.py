@@ -1,0 +1,1 @@
+"""Tracking systems that are not there: a laboratory rehearses with them."""
