@@ -26,7 +26,9 @@ class DistanceIndex:
         order = np.argsort(between.max(1))
         self._reach_m = between.max(1)[order]
         everyone = np.arange(len(patterns))[:, None]
-        rest = np.array([[p for p in range(patterns.shape[1]) if p not in ends] for ends in zip(first, last, strict=True)])
+        rest = np.array(
+            [[p for p in range(patterns.shape[1]) if p not in ends] for ends in zip(first, last, strict=True)]
+        )
         self._pins = patterns[everyone, np.column_stack([first, last, rest])][order]
 
     def groups(self, points: Points) -> list[tuple[int, ...]]:
@@ -49,7 +51,9 @@ class DistanceIndex:
     def _candidates(self, points: Points) -> tuple[Numbers, Numbers]:
         """Ordered pairs of points (m, 2) and, for each, a pattern (m,) whose reach is about their distance."""
         apart_m = np.abs(points[:, None] - points)
-        near = (apart_m >= self._reach_m[0] - self._tolerance_m) & (apart_m <= self._reach_m[-1] + self._tolerance_m)
+        near = (apart_m >= self._reach_m[0] - self._tolerance_m) & (
+            apart_m <= self._reach_m[-1] + self._tolerance_m
+        )
         one, other = np.nonzero(near)
         low = np.searchsorted(self._reach_m, apart_m[one, other] - self._tolerance_m)
         high = np.searchsorted(self._reach_m, apart_m[one, other] + self._tolerance_m)

@@ -43,7 +43,9 @@ class HatHistory:
                 self._place_of[hat] = other
                 if self._place_of.get(other) == hat:
                     names = (self.hats[other].name, name)
-                    events.append(HatEvent("swap", f"hats {names[0]} and {names[1]} have swapped places", names))
+                    events.append(
+                        HatEvent("swap", f"hats {names[0]} and {names[1]} have swapped places", names)
+                    )
                     del self._place_of[hat], self._place_of[other]
         return events
 

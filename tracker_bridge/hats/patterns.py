@@ -79,7 +79,9 @@ def _kind(pins: tuple[complex, ...], pitch_m: float) -> tuple[tuple[int, int], .
     """The same for all patterns that quarter turns and shifts make equal."""
     forms = []
     for turn in (1, 1j, -1, -1j):
-        cells = [(round((pin * turn).real * 2 / pitch_m), round((pin * turn).imag * 2 / pitch_m)) for pin in pins]
+        cells = [
+            (round((pin * turn).real * 2 / pitch_m), round((pin * turn).imag * 2 / pitch_m)) for pin in pins
+        ]
         least_x, least_y = min(x for x, _ in cells), min(y for _, y in cells)
         forms.append(tuple(sorted((x - least_x, y - least_y) for x, y in cells)))
     return min(forms)

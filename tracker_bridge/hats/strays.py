@@ -35,7 +35,9 @@ class StrayWatch:
         self._strays = [stray for stray in self._strays if t_ns - stray.seen_ns < FORGOTTEN_NS]
         for point in points:
             self._see(complex(point), t_ns)
-        new = [stray for stray in self._strays if not stray.named and stray.seen_ns - stray.since_ns > STAYS_NS]
+        new = [
+            stray for stray in self._strays if not stray.named and stray.seen_ns - stray.since_ns > STAYS_NS
+        ]
         for stray in new:
             stray.named = True
         return [stray.place for stray in new]
