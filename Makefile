@@ -38,4 +38,4 @@ messages: setup
 
 # The parts of the documentation that are made from the code; tests compare them.
 docs: setup
-	$(BIN)/python -m swarm.keys_table > docs/keys.md
+	$(BIN)/python -m swarm.messages.topic_reference > docs/keys.md

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from robot_agent.brain import Brain, Transition
 from robot_agent.checkpoint import Checkpoint
-from robot_agent.drivers.body import Body, WheelSpeeds
+from robot_agent.drivers.interfaces import Body
+from robot_agent.drivers.kinematics import WheelSpeeds
 from robot_agent.inbox import AgentInbox
-from robot_agent.motion import Motion
-from robot_agent.pose import PoseEstimator
+from robot_agent.navigation.motion import Motion
+from robot_agent.navigation.pose_estimator import PoseEstimator
+from robot_agent.policies.policy import Brain, Transition
 from robot_agent.reports import Reporter
 from swarm.clock import NS_PER_S
 from swarm.errors import UserError
 from swarm.geometry import Compartment, Pose
-from swarm.messages import swarm_pb2 as pb
 
 if TYPE_CHECKING:
-    from robot_agent.visit import Visit
+    from robot_agent.imitation.visit import BeginVisit, Visit
 
 
 class Activity(Enum):
@@ -43,8 +42,6 @@ class Activity(Enum):
 
 
 STANDS_BETWEEN_MOVES = (Activity.WAITING, Activity.RETURNING, Activity.RESTING, Activity.DECIDING)
-BeginVisit = Callable[[pb.Order], "Visit"]
-"""Makes a visit of an order to watch; None in a robot without a camera."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,29 +3,32 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from google.protobuf.message import Message
 
-from robot_agent.agent import Agent, BeginVisit
-from robot_agent.brain import Brain, Publish
-from robot_agent.drivers.driver import Driver, DriverParts
-from robot_agent.drivers.epuck import EpuckGeometry
-from robot_agent.drivers.table import make_driver
-from robot_agent.expert import Expert
+from robot_agent.agent import Agent
+from robot_agent.drivers.interfaces import Driver, DriverParts
+from robot_agent.drivers.kinematics import EpuckGeometry
+from robot_agent.drivers.registry import make_driver
 from robot_agent.inbox import AgentInbox
-from robot_agent.learner import Learner
-from robot_agent.motion import Motion, MotionSettings
-from robot_agent.pose import PoseAt, PoseEstimator
+from robot_agent.navigation.motion import Motion, MotionSettings
+from robot_agent.navigation.pose_estimator import PoseAt, PoseEstimator
+from robot_agent.policies.expert import Expert
+from robot_agent.policies.learner import Learner
+from robot_agent.policies.policy import Brain, Publish
 from robot_agent.reports import Reporter
-from swarm.experiment import Experiment, RobotSettings, Role
-from swarm.keys import Topic
+from swarm.config.experiment import Experiment, RobotSettings, Role
 from swarm.learning.controller import Controller
 from swarm.learning.memory import ImitationMemory
 from swarm.learning.q_table import QTable
 from swarm.learning.random import spawned_generator
-from swarm.link import Link
+from swarm.messages.topics import Topic
+from swarm.runtime.node import Link
+
+if TYPE_CHECKING:
+    from robot_agent.imitation.visit import BeginVisit
 
 
 class Assembly:
@@ -95,6 +98,6 @@ def _visits(
     """Only a robot that watches loads what it takes to see."""
     if not parts.robot.watches or not isinstance(brain, Learner):
         return None
-    from robot_agent.sight import visits_of
+    from robot_agent.imitation.assembly import visits_of
 
     return visits_of(parts, driver, brain, pose_at, publish)

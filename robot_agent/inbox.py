@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from swarm import keys
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
-from swarm.link import Link
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
+from swarm.runtime.node import Link
 
 CONDUCTOR_SILENT_S = 5.0
 
@@ -20,9 +20,9 @@ class AgentInbox:
     """
 
     def __init__(self, link: Link, robot: str) -> None:
-        self._poses = link.subscribe(keys.POSE, robot)
-        self._orders = link.subscribe(keys.ORDER, robot)
-        self._run_states = link.subscribe(keys.RUN_STATE)
+        self._poses = link.subscribe(topics.POSE, robot)
+        self._orders = link.subscribe(topics.ORDER, robot)
+        self._run_states = link.subscribe(topics.RUN_STATE)
         self._phase = pb.RunState.PHASE_UNSPECIFIED
         self._heard_ns = 0
         self._order = pb.Order(kind=pb.Order.RUN)

@@ -10,10 +10,15 @@ from pathlib import Path
 from robot_agent.agent import Agent
 from robot_agent.assembly import Assembly
 from robot_agent.checkpoint import Checkpoint
-from swarm.errors import UserError, nearest
-from swarm.experiment import Experiment
-from swarm.guard import guarded
-from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals, load_experiment
+from swarm.config.experiment import Experiment
+from swarm.errors import UserError, guarded, nearest
+from swarm.runtime.process import (
+    OneLineParser,
+    add_common_arguments,
+    joined,
+    leave_on_signals,
+    load_experiment,
+)
 
 
 def main() -> None:
@@ -24,11 +29,11 @@ def main() -> None:
 def _called(words: list[str]) -> None:
     """A tool if the first word names one, and else a robot."""
     if words[:1] == ["calibrate"]:
-        from robot_agent.calibrating import calibrate, calibrate_parser
+        from robot_agent.commands.calibrate import calibrate, calibrate_parser
 
         calibrate(calibrate_parser().parse_args(words[1:]))
     elif words[:1] == ["collect-copies"]:
-        from robot_agent.collecting import collect, collect_parser
+        from robot_agent.commands.collect_copies import collect, collect_parser
 
         collect(collect_parser().parse_args(words[1:]))
     else:

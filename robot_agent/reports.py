@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from robot_agent.brain import Brain, Publish
-from robot_agent.drivers.body import WheelSpeeds
-from swarm import keys
+from robot_agent.drivers.kinematics import WheelSpeeds
+from robot_agent.policies.policy import Brain, Publish
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
 
 STATUS_PERIOD_NS = NS_PER_S
 LONGEST_AGE_S = 1e5
@@ -24,7 +24,7 @@ class Reporter:
         """Wheel speeds as sent, and the pose that the robot believes (0, 0, 0 before the first fix)."""
         believed = pose or Pose(0.0, 0.0, 0.0)
         self._publish(
-            keys.COMMAND,
+            topics.COMMAND,
             pb.Command(
                 left_steps_per_s=sent.left_steps_per_s,
                 right_steps_per_s=sent.right_steps_per_s,
@@ -40,7 +40,7 @@ class Reporter:
             return
         self._status_due_ns = t_ns + STATUS_PERIOD_NS
         self._publish(
-            keys.STATUS,
+            topics.STATUS,
             pb.Status(
                 activity=activity,
                 moves=brain.moves,
@@ -52,4 +52,4 @@ class Reporter:
 
     def event(self, name: str, text: str, level: pb.Event.Level.ValueType = pb.Event.WARNING) -> None:
         """Something that a person should be able to read in the log."""
-        self._publish(keys.EVENT, pb.Event(level=level, name=name, text=text))
+        self._publish(topics.EVENT, pb.Event(level=level, name=name, text=text))

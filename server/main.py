@@ -11,16 +11,15 @@ from pathlib import Path
 
 from rich.console import Console
 
-from server.progress import RunProgress
+from server.processes.environment import laboratory, simulated
+from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
-from server.stage import laboratory, simulated
-from server.summary import print_summary
-from swarm.bus import Bus, BusSettings
 from swarm.cli.output import print_json
-from swarm.experiment import Experiment
-from swarm.guard import guarded
-from swarm.process import OneLineParser, leave_on_signals
+from swarm.config.experiment import Experiment
+from swarm.errors import guarded
+from swarm.runtime.process import OneLineParser, leave_on_signals
+from swarm.runtime.zenoh_session import Bus, BusSettings
 
 
 def main() -> None:

@@ -1,15 +1,16 @@
-"""What a person sees while a run goes on: a bar with the moves and the learning so far."""
+"""What a person sees of a run: a bar while it goes on, and a summary at its end."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from types import TracebackType
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from server.conductor import Conductor
-from swarm.experiment import Experiment
+from server.conductor.conductor import Conductor
+from swarm.config.experiment import Experiment
 
 
 class RunProgress:
@@ -64,3 +65,13 @@ class RunProgress:
     def warn(self, text: str) -> None:
         """A line above the bar."""
         self._progress.console.print(f"warning: {text}", highlight=False)
+
+
+def print_summary(summary: Mapping[str, Any]) -> None:
+    """Where the run is, how long it took, and what to do next."""
+    hours = summary["sim_s"] / 3600
+    print(f"run        {summary['run']}")
+    print(f"moves      {summary['moves']}, {hours:.1f} h of the robots' time in {summary['wall_s']:.0f} s")
+    print(f"speed      {summary['real_time_factor']:.0f} times real time")
+    print(f"digest     {summary['digest'][:16]}")
+    print(f"next       swarm analyze {summary['run']}")

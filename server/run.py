@@ -11,16 +11,16 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from server.conductor import Conductor
-from server.health import Health
+from server.conductor.conductor import Conductor
+from server.processes.environment import SetStage
 from server.progress import RunProgress
-from server.provenance import metadata, versions
-from server.recorder import Recorder, digest
+from server.recording.foxglove_views import Views
+from server.recording.health import Health
+from server.recording.provenance import metadata, versions
+from server.recording.recorder import Recorder, digest
 from server.run_directory import RunDirectory
-from server.stage import SetStage
 from server.trial import Trial, TrialResult
-from server.views import Views
-from swarm.experiment import Experiment
+from swarm.config.experiment import Experiment
 
 
 @dataclass

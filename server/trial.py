@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from server.conductor import Conductor
-from server.health import Health
-from server.recorder import Recorder
-from server.stage import Stage
-from server.views import Views
+from server.conductor.conductor import Conductor
+from server.processes.environment import Stage
+from server.recording.foxglove_views import Views
+from server.recording.health import Health
+from server.recording.recorder import Recorder
 from swarm.messages import swarm_pb2 as pb
 
 BATCHES_AFTER_THE_END = 3

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.swarm_runs import experiment_text, run_server, write_experiment
+from tests.support.swarm_runs import experiment_text, run_server, write_experiment
 
 
 @dataclass(frozen=True)

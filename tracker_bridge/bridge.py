@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from swarm import keys
 from swarm.clock import NS_PER_S
-from swarm.link import Link
 from swarm.messages import swarm_pb2 as pb
-from tracker_bridge.backends.backend import Backend, TrackedPose
-from tracker_bridge.gate import Gate
+from swarm.messages import topics
+from swarm.runtime.node import Link
+from tracker_bridge.backends.interface import Backend, TrackedPose
+from tracker_bridge.plausibility import Gate
 
 LOST_AFTER_NS = 2 * NS_PER_S
 
@@ -45,7 +45,7 @@ class Bridge:
         message = pb.Pose(
             x_m=pose.x_m, y_m=pose.y_m, theta_rad=pose.theta_rad, captured_t_ns=tracked.captured_t_ns
         )
-        self._link.publish(keys.POSE, message, tracked.robot)
+        self._link.publish(topics.POSE, message, tracked.robot)
 
     def _report(self, name: str, text: str) -> None:
-        self._link.publish(keys.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))
+        self._link.publish(topics.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
-from functools import partial
 
-from swarm import keys
-from swarm.errors import UserError, nearest
-from swarm.experiment import Experiment
-from swarm.guard import guarded
-from swarm.learning.random import spawned_generator
-from swarm.link import Link
-from swarm.process import OneLineParser, add_common_arguments, joined, leave_on_signals, load_experiment
-from tracker_bridge.backends.backend import Backend
-from tracker_bridge.backends.sim import SimulatedTracker
+from swarm.errors import guarded
+from swarm.runtime.process import (
+    OneLineParser,
+    add_common_arguments,
+    joined,
+    leave_on_signals,
+    load_experiment,
+)
+from tracker_bridge.backends.registry import backend_named
 from tracker_bridge.bridge import Bridge
-from tracker_bridge.gate import Gate, GateSettings
+from tracker_bridge.plausibility import Gate, GateSettings
 
 
 def main() -> None:
@@ -28,7 +26,7 @@ def main() -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and pass poses on until the run ends or the process is told to leave."""
     experiment = load_experiment(arguments)
-    make_backend = _backend_named(experiment.tracker.backend)
+    make_backend = backend_named(experiment.tracker.backend)
     leave_on_signals()
     with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s) as link:
         backend = make_backend(experiment, link, arguments.trial)
@@ -36,25 +34,6 @@ def run(arguments: argparse.Namespace) -> None:
         gate = Gate(GateSettings(arena.width_m, arena.height_m))
         bridge = Bridge(backend, gate, link, [robot.id for robot in experiment.robot])
         link.run(bridge.step)
-
-
-MakeBackend = Callable[[Experiment, Link, int], Backend]
-
-
-def _simulated(experiment: Experiment, link: Link, trial: int) -> Backend:
-    truths = link.subscribe(keys.TRUTH)
-    generator = partial(spawned_generator, experiment.run.seed, "", trial, component="tracker")
-    return SimulatedTracker(experiment.tracker, truths.take, lambda robot: generator(robot=robot))
-
-
-BACKENDS: dict[str, MakeBackend] = {"sim": _simulated}
-"""[tracker] backend: a new tracking system adds one line."""
-
-
-def _backend_named(name: str) -> MakeBackend:
-    if name not in BACKENDS:
-        raise UserError(f"[tracker] backend is {name!r}; {nearest(name, BACKENDS)}")
-    return BACKENDS[name]
 
 
 def _parser() -> OneLineParser:

@@ -9,18 +9,14 @@ from typing import TypeVar
 
 import numpy as np
 
-from robot_agent.imitation.drive_back import Place, demonstration_rests
-from robot_agent.imitation.gaps import longest_seen
+from robot_agent.imitation.compass_moves import read_moves
+from robot_agent.imitation.demonstration import Place, Rest, demonstration_rests, find_rests, longest_seen
 from robot_agent.imitation.line_fitting import fit_segments, snap
-from robot_agent.imitation.moves import read_moves
-from robot_agent.imitation.observation import ObservedPosition
-from robot_agent.imitation.outliers import inliers
-from robot_agent.imitation.rests import Rest, find_rests
+from robot_agent.imitation.positions import ObservedPosition, Sightings, inliers, plausible_sightings
 from robot_agent.imitation.segments import Segment, find_vertices, segments_between
-from robot_agent.imitation.sightings import Sightings, plausible_sightings
 from robot_agent.imitation.smoothing import Smoothed, smooth
 from swarm.geometry import Move
-from swarm.learning.paths import ObservedPath
+from swarm.learning.memory import ObservedPath
 
 MOST_POSITIONS = 5_000
 """A quarter of an hour at five frames a second; more is a fault, and would keep the robot from its work."""

@@ -15,8 +15,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from robot_agent.imitation.positions import Floats, Sightings
 from robot_agent.imitation.segments import Segment, from_chord
-from robot_agent.imitation.sightings import Floats, Sightings
 from swarm.geometry import MOVES, Move, wrap_angle_rad
 
 SPLIT_CELLS = 0.3

@@ -9,9 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from robot_agent.imitation.outliers import chi2
-from robot_agent.imitation.rests import Rest
-from robot_agent.imitation.sightings import Floats, Sightings
+from robot_agent.imitation.demonstration import Rest
+from robot_agent.imitation.positions import Floats, Sightings, chi2
 from robot_agent.imitation.smoothing import Smoothed
 from swarm.geometry import wrap_angle_rad
 

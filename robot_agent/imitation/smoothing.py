@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot_agent.imitation.sightings import Floats, Sightings
+from robot_agent.imitation.positions import Floats, Sightings
 
 ACCELERATION_NOISE_M2_S3 = 0.025
 """q: 250 cm^2/s^3 follows a robot that starts and stops within a quarter of a second."""

@@ -13,7 +13,7 @@ import typer
 from swarm.cli.output import print_json, require_extra
 
 if TYPE_CHECKING:
-    from swarm.analysis.run_analysis import Analysis
+    from swarm.analysis.analyze import Analysis
 
 
 def analyze_command(
@@ -39,7 +39,7 @@ def analyze_command(
     Trials of the same condition are pooled; the interval is the 95 % interval of the mean over trials.
     """
     require_extra("lab", "mcap", "polars", "matplotlib", "scipy", "rich")
-    from swarm.analysis.run_analysis import Request, analyze
+    from swarm.analysis.analyze import Request, analyze
 
     with _progress() as show:
         analysis = analyze(Request(run, out, samples, threshold), show)
@@ -55,7 +55,7 @@ def print_analysis(analysis: Analysis) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from swarm.analysis.run_report import condition_head, condition_rows, sentence
+    from swarm.analysis.report import condition_head, condition_rows, sentence
 
     summary, console = analysis.summary, Console(highlight=False)
     table = Table(box=box.SIMPLE_HEAD, title=summary.title, title_justify="left", pad_edge=False)

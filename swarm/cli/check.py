@@ -20,7 +20,7 @@ def check_command(
     Exit code 0: it is. 1: it is not, with the reasons. 2: it is no log of a run.
     """
     require_extra("lab", "mcap", "polars")
-    from swarm.analysis.log_check import check_log
+    from swarm.logs.check import check_log
 
     found = check_log(log)
     if json:

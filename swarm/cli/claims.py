@@ -23,12 +23,11 @@ def judge_claims(words: Sequence[str], command: str, **asked: Any) -> tuple[dict
     Returns the result as plain data, and the same as lines to read; `asked` are the fields of `Settings`.
     """
     require_extra("lab", "numba", "scipy", "polars", "matplotlib")
-    from swarm.experiments.assessment import assess
-    from swarm.experiments.catalogue import chosen_names
-    from swarm.experiments.reports.as_json import as_json
-    from swarm.experiments.reports.rows import summary
-    from swarm.experiments.reports.write import write_report
-    from swarm.experiments.settings import Settings
+    from swarm.paper.assessment import assess
+    from swarm.paper.catalogue import chosen_names
+    from swarm.paper.options import Settings
+    from swarm.paper.report import summary, write_report
+    from swarm.paper.report_json import as_json
 
     assessment = assess(chosen_names(words or ["all"]), Settings(**asked))
     files = {form: str(path) for form, path in write_report(assessment, command).items()}

@@ -11,7 +11,7 @@ import typer
 
 from swarm.cli.output import print_json, require_extra
 
-DURATIONS = Path(__file__).parents[2] / "deploy" / "copies" / "durations.csv"
+DURATIONS = Path(__file__).parents[1] / "surrogate" / "data" / "durations.csv"
 
 Json = Annotated[bool, typer.Option("--json", help="Print the results as one JSON object.")]
 
@@ -23,7 +23,7 @@ def durations_command(
 ) -> None:
     """Measure in logs how long moves and drives back take, for `swarm trials`."""
     require_extra("lab", "mcap", "polars")
-    from swarm.experiments.durations import write_durations
+    from swarm.surrogate.durations import write_durations
 
     seconds = measured_in(run)
     told = "seconds of driven moves by turn (eighths of a circle) and way, measured in a simulated run"
@@ -39,10 +39,10 @@ def measured_in(runs: list[Path]) -> dict[str, list[float]]:
     """Seconds by kind in the logs of these runs."""
     import polars as pl
 
-    from swarm.analysis.read_run import read_logs
-    from swarm.analysis.run_inputs import find_inputs
-    from swarm.experiments.durations import Step, measured
+    from swarm.analysis.inputs import find_inputs
     from swarm.geometry import Grid
+    from swarm.logs.parquet import read_logs
+    from swarm.surrogate.durations import Step, measured
 
     goal = Grid(10, 10).goal
     with tempfile.TemporaryDirectory() as folder:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from swarm.cli.output import require_extra
-from swarm.guard import guarded
+from swarm.errors import guarded
 
 
 def _run() -> None:

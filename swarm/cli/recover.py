@@ -20,7 +20,7 @@ def recover_command(
     Exit code 0, with what could not be read. 2: it is no log, or nothing can be read.
     """
     require_extra("lab", "mcap", "small_mcap")
-    from swarm.analysis.log_recover import recover_log
+    from swarm.logs.recover import recover_log
 
     whole = out or log.with_suffix(".recovered.mcap")
     found = recover_log(log, whole)

@@ -38,9 +38,9 @@ Json = Annotated[bool, typer.Option("--json", help="Print the results as one JSO
 def reproduce_figures(words: Sequence[str], **asked: Any) -> dict[str, Any]:
     """The figures that `words` name, reproduced; `asked` are the fields of `Settings`."""
     require_extra("lab", "numba", "scipy", "polars", "matplotlib")
-    from swarm.experiments.catalogue import chosen_names, load_figure
-    from swarm.experiments.reproduction import reproduce
-    from swarm.experiments.settings import Settings
+    from swarm.paper.catalogue import chosen_names, load_figure
+    from swarm.paper.options import Settings
+    from swarm.paper.runner import reproduce
 
     settings = Settings(**asked)
     if not words:

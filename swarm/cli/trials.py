@@ -14,7 +14,7 @@ from swarm.cli.output import print_json, require_extra
 from swarm.errors import UserError
 
 if TYPE_CHECKING:
-    from swarm.analysis.curves import Curves
+    from swarm.statistics.samples import Curves
 
 COPIES = DURATIONS.parent / "best.csv"
 NOTE = (
@@ -39,9 +39,9 @@ def many_trials(
 ) -> dict[str, Any]:
     """Run the trials, and write picture and tables into a new directory."""
     require_extra("lab", "scipy", "polars", "matplotlib")
-    from swarm.experiment import Experiment
-    from swarm.experiments.robot_plots import first_trials, write_picture
-    from swarm.experiments.robot_trials import PAPER_TRIALS, run_trials, summary, write_tables
+    from swarm.config.experiment import Experiment
+    from swarm.surrogate.plots import first_trials, write_picture
+    from swarm.surrogate.trials import PAPER_TRIALS, run_trials, summary, write_tables
 
     experiment = Experiment.load(file).changed(seed=seed, moves=moves)
     of_full = _curves_of(full) if full else None
@@ -58,9 +58,9 @@ def _curves_of(runs: list[Path]) -> dict[str, Curves]:
     """The learning curves in the logs of a full simulation."""
     import polars as pl
 
-    from swarm.analysis.read_run import read_logs
-    from swarm.analysis.run_curves import run_curves
-    from swarm.analysis.run_inputs import find_inputs
+    from swarm.analysis.inputs import find_inputs
+    from swarm.analysis.learning_curves import run_curves
+    from swarm.logs.parquet import read_logs
 
     require_extra("lab", "mcap")
     with tempfile.TemporaryDirectory() as folder:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from swarm.gridworld.arena import Arena
-from swarm.learning.memory import Approach
-from swarm.learning.paths import ObservedPath
+from swarm.learning.memory import Approach, ObservedPath
 
 
 @dataclass(frozen=True)

@@ -12,13 +12,13 @@ import tempfile
 from pathlib import Path
 from statistics import median
 
-from server.lockstep_hub import LockstepHub
-from server.supervisor import ProcessSpec, Supervisor
-from swarm.bus import Bus, BusSettings
-from swarm.presence import Presence, claim
+from server.hubs.lockstep import LockstepHub
+from server.processes.supervisor import ProcessSpec, Supervisor
+from swarm.runtime.liveliness import Presence, claim
+from swarm.runtime.zenoh_session import Bus, BusSettings
 from tests.benchmarks.processes import resident_mib
-from tests.endpoints import free_endpoint
-from tests.swarm_runs import ROOT, experiment_text, learners, write_experiment
+from tests.support.endpoints import free_endpoint
+from tests.support.swarm_runs import ROOT, experiment_text, learners, write_experiment
 
 TICKS = 200
 
@@ -49,7 +49,9 @@ def import_cost(repeats: int = 3) -> dict[str, float]:
     """CPU time in seconds of a new interpreter's imports, less that of an interpreter alone."""
     alone = _cpu_s("pass", repeats)
     return {
-        "agent_cpu_s": round(_cpu_s("import robot_agent.main, swarm.bus, zenoh", repeats) - alone, 3),
+        "agent_cpu_s": round(
+            _cpu_s("import robot_agent.main, swarm.runtime.zenoh_session, zenoh", repeats) - alone, 3
+        ),
         "numpy_cpu_s": round(_cpu_s("import numpy", repeats) - alone, 3),
     }
 

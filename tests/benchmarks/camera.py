@@ -12,10 +12,10 @@ import time
 import cv2
 import numpy as np
 
-from robot_agent.drivers.camera_conditions import conditions
-from robot_agent.drivers.camera_model import load_camera_model
-from robot_agent.drivers.camera_scene import Body, Post, Rectangle, Scene
-from robot_agent.drivers.camera_sim import SimulatedCamera
+from robot_agent.drivers.sim.rendering.camera import SimulatedCamera
+from robot_agent.drivers.sim.rendering.conditions import conditions
+from robot_agent.drivers.sim.rendering.scene import Body, Post, Rectangle, Scene
+from robot_agent.vision.camera_model import load_camera_model
 from swarm.geometry import Pose
 from tests.benchmarks.seeing import CALIBRATION
 

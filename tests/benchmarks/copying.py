@@ -18,8 +18,8 @@ import numpy as np
 
 from robot_agent.imitation.copying import CopyProfile, NoCopy, copy_moves
 from swarm.geometry import Move
-from swarm.learning.edit_distance import edit_distance
-from tests.demonstrations import (
+from swarm.learning.alignment import edit_distance
+from tests.support.demonstrations import (
     COMPARTMENT,
     OUTSIDE_CORNER,
     Conditions,

@@ -14,7 +14,7 @@ from typing import Any
 
 from robot_agent.imitation.copying import CopyProfile
 from tests.benchmarks.copying import CHOOSE_MOVES, demonstrations, score
-from tests.demonstrations import Conditions
+from tests.support.demonstrations import Conditions
 
 NOISE_PER_CM = (0.0, 6.7e-5, 1.5e-4, 3e-4, 4.9e-4, 6e-4)
 FRAMES_HZ = (2.0, 5.0, 10.0)

@@ -26,8 +26,8 @@ import numpy as np
 from swarm.geometry import MOVES, Move
 from swarm.gridworld.arena import OBSTACLE_100, neighbours
 from swarm.gridworld.condition import Condition, GivenPaths, NoTeacher, Teacher
-from swarm.gridworld.engine import simulate
-from swarm.learning.paths import ObservedPath
+from swarm.gridworld.simulation import simulate
+from swarm.learning.memory import ObservedPath
 from swarm.learning.q_table import ALPHA, GAMMA
 
 EPSILON, BETA, PATH_MOVES = 0.5, 0.5, 20

@@ -17,14 +17,14 @@ from typing import Any
 
 from rich.console import Console
 
-from server.conductor import Conductor
+from server.conductor.conductor import Conductor
+from server.processes.environment import simulated
 from server.progress import RunProgress
 from server.run import Run
 from server.run_directory import RunDirectory
-from server.stage import simulated
-from swarm.experiment import Experiment
+from swarm.config.experiment import Experiment
 from tests.benchmarks.processes import cpu_of
-from tests.swarm_runs import experiment_text, learners, write_experiment
+from tests.support.swarm_runs import experiment_text, learners, write_experiment
 
 TICK_S = 0.1
 

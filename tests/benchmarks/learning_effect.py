@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from swarm.experiment import LearningSettings
-from tests.fast_moves import FastRobot, Kind, durations_in
-from tests.swarm_runs import experiment_text, learners, run_server, write_experiment
+from swarm.config.experiment import LearningSettings
+from tests.support.fast_moves import FastRobot, Kind, durations_in
+from tests.support.swarm_runs import experiment_text, learners, run_server, write_experiment
 
 MOVES = 15_000
 TRIALS = 40

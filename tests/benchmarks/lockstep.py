@@ -22,13 +22,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
-from server.cores import available_cores, keeping_to, spread
-from server.lockstep_hub import LockstepHub
-from server.stage import socket_endpoint
-from server.supervisor import ProcessSpec, Supervisor
-from swarm.bus import Bus, BusSettings
-from swarm.lockstep import LockstepLink, patient
-from swarm.presence import Presence, claim
+from server.hubs.lockstep import LockstepHub
+from server.processes.cpu_affinity import available_cores, keeping_to, spread
+from server.processes.environment import socket_endpoint
+from server.processes.supervisor import ProcessSpec, Supervisor
+from swarm.runtime.liveliness import Presence, claim
+from swarm.runtime.lockstep import LockstepLink, patient
+from swarm.runtime.zenoh_session import Bus, BusSettings
 from tests.benchmarks.processes import cpu_of
 
 MODULE = "tests.benchmarks.lockstep"

@@ -13,9 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from robot_agent.drivers.sim import BodyFaults
-from robot_agent.motion import MotionSettings
-from tests.moving_robot import COMPARTMENT, TICK_NS, MoveFigures, MovingRobot, TrackerFaults, random_moves
+from robot_agent.drivers.sim.body import BodyFaults
+from robot_agent.navigation.motion import MotionSettings
+from tests.support.moving_robot import (
+    COMPARTMENT,
+    TICK_NS,
+    MoveFigures,
+    MovingRobot,
+    TrackerFaults,
+    random_moves,
+)
 
 MOVES = 1000
 

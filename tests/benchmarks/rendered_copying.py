@@ -22,10 +22,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from robot_agent.imitation.copying import NoCopy
-from robot_agent.rehearsal.rehearse import rehearsals
-from robot_agent.rehearsal.stage import rehearsal_experiment
-from swarm.experiment import Watching
-from swarm.learning.edit_distance import edit_distance
+from robot_agent.offline.observation_session import rehearsal_experiment, rehearsals
+from swarm.config.experiment import Watching
+from swarm.learning.alignment import edit_distance
 
 BARS = {
     "best/realistic/random": ("imperfect", 0.0, 0.01),

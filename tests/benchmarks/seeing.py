@@ -17,14 +17,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from robot_agent.drivers.camera import Frame
-from robot_agent.drivers.camera_conditions import conditions
-from robot_agent.drivers.camera_model import CameraModel, load_camera_model
-from robot_agent.drivers.camera_scene import Body, Post, Rectangle, Scene
-from robot_agent.drivers.camera_sim import SimulatedCamera, calibration_frames
-from robot_agent.imitation.calibration import learn_colour_table
-from robot_agent.imitation.cylinder import SKIRT_RADIUS_M, half_angle_rad
-from robot_agent.imitation.seeing import PROFILES, NotSeen, Seer, Sighting
+from robot_agent.drivers.sim.rendering.camera import SimulatedCamera, calibration_frames
+from robot_agent.drivers.sim.rendering.conditions import conditions
+from robot_agent.drivers.sim.rendering.scene import Body, Post, Rectangle, Scene
+from robot_agent.vision.camera_model import CameraModel, load_camera_model
+from robot_agent.vision.colour_calibration import learn_colour_table
+from robot_agent.vision.detector import PROFILES, NotSeen, Seer, Sighting
+from robot_agent.vision.frames import Frame
+from robot_agent.vision.skirt import SKIRT_RADIUS_M, half_angle_rad
 from swarm.geometry import Pose
 
 CALIBRATION = Path(__file__).parents[2] / "deploy" / "cameras" / "epuck_320x240.toml"

@@ -18,8 +18,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from swarm.experiment import Experiment
-from tests.swarm_runs import ROOT, messages, server_command
+from swarm.config.experiment import Experiment
+from tests.support.swarm_runs import ROOT, messages, server_command
 
 EXPERIMENT = ROOT / "deploy" / "sim" / "demo.toml"
 LEAST_REAL_TIME_FACTOR = 80.0

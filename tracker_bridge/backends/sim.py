@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from swarm.clock import NS_PER_S
-from swarm.experiment import TrackerSettings
-from swarm.feed import Received
+from swarm.config.experiment import TrackerSettings
 from swarm.geometry import Pose, wrap_angle_rad
 from swarm.messages import swarm_pb2 as pb
-from tracker_bridge.backends.backend import TrackedPose
+from swarm.runtime.subscription import Received
+from tracker_bridge.backends.interface import TrackedPose
 
 SECONDS_PER_HOUR = 3600.0
 STACK = 256

@@ -1,0 +1,1 @@
+"""The tools of `robot-agent`, a file each."""

@@ -1,0 +1,1 @@
+"""The simulated robot: body, camera, and what shows the tracker its truth."""

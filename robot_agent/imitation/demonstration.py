@@ -1,0 +1,164 @@
+"""Which part of an observation is the demonstration: stops, gaps, and the return trip to the start."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robot_agent.imitation.positions import Floats
+from robot_agent.imitation.smoothing import Smoothed
+
+REST_SPEED_M_S = 0.05
+BLIP_CELLS = 0.4
+"""A drive shorter than this is noise: 5 cm in cells of 12 cm."""
+
+
+@dataclass(frozen=True)
+class Rest:
+    """The positions `first` to `last`, both of them seen while the demonstrator stood still."""
+
+    first: int
+    last: int
+
+    def duration_s(self, smoothed: Smoothed) -> float:
+        return float(smoothed.t_s[self.last] - smoothed.t_s[self.first])
+
+    def place_m(self, smoothed: Smoothed) -> Floats:
+        """The mean of the positions at rest; a blip in between does not count."""
+        seen = slice(self.first, self.last + 1)
+        standing = smoothed.speed_m_s[seen] <= REST_SPEED_M_S
+        mean: Floats = smoothed.xy_m[seen][standing].mean(axis=0)
+        return mean
+
+
+def find_rests(smoothed: Smoothed, cell_m: float) -> list[Rest]:
+    """Every stop in the order of time; a drive that the first or the last frame cuts has no rest there."""
+    rests: list[Rest] = []
+    for first, last in _runs(smoothed.speed_m_s <= REST_SPEED_M_S):
+        rest = Rest(first, last)
+        if rests and _is_blip(smoothed, rests[-1], rest, cell_m):
+            rests[-1] = Rest(rests[-1].first, last)
+        else:
+            rests.append(rest)
+    return rests
+
+
+def _is_blip(smoothed: Smoothed, before: Rest, after: Rest, cell_m: float) -> bool:
+    """Whether what looked like a drive led nowhere."""
+    return math.dist(before.place_m(smoothed), after.place_m(smoothed)) < BLIP_CELLS * cell_m
+
+
+def _runs(chosen: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First and last index of each run of true values."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], chosen, [False])).astype(np.int8)))
+    return [(int(first), int(after) - 1) for first, after in zip(edges[::2], edges[1::2], strict=True)]
+
+
+Place = tuple[float, float]
+
+LONG_REST_S = 1.2
+"""What smoothing and frame rate leave of a rest of 1.5 s; no drive spans it."""
+MOST_FALSE_STOPS = 6
+LEAST_CELLS = 6 * math.sqrt(2)
+"""A drive back is longer than any list of five moves ..."""
+MOST_STANDING = 0.15
+"""... and in less of its frames the robot seems to stand; an expert's stops take a quarter of them."""
+LEAST_CELLS_TO_START = 4.0
+MOST_STANDING_TO_START = 0.25
+"""Both bounds can be wider if the start is known, and is where the drive ends, to within ..."""
+START_CELLS = 2.5
+
+
+@dataclass(frozen=True, order=True)
+class _Drive:
+    """A drive from one rest to another."""
+
+    length_m: float
+    start: int
+    end: int
+
+    def overlaps(self, other: _Drive) -> bool:
+        return self.start < other.end and other.start < self.end
+
+
+def demonstration_rests(
+    smoothed: Smoothed, rests: Sequence[Rest], cell_m: float, start_m: Place | None = None
+) -> list[Rest]:
+    """The rests of the longest demonstration: its first, those between its moves, and its last.
+
+    Demonstrations are what lies before, between and after drives back. A longer rest alone does not part
+    two, since a slow turn can take 1.5 s as well. Fewer than two rests mean that nothing was shown.
+    """
+    drives = sorted(_drives_back(smoothed, rests, cell_m, start_m), key=lambda drive: drive.start)
+    firsts = [0, *(drive.end for drive in drives)]
+    lasts = [*(drive.start for drive in drives), len(rests) - 1]
+    return max((list(rests[a : b + 1]) for a, b in zip(firsts, lasts, strict=True)), key=len)
+
+
+def _drives_back(
+    smoothed: Smoothed, rests: Sequence[Rest], cell_m: float, start_m: Place | None
+) -> list[_Drive]:
+    """The longest drives that look like a drive back and do not overlap."""
+    standing = np.concatenate(([0], np.cumsum(smoothed.speed_m_s <= REST_SPEED_M_S)))
+    chosen: list[_Drive] = []
+    for drive in sorted(_candidates(smoothed, rests), reverse=True):
+        first, after = rests[drive.start].last + 1, rests[drive.end].first
+        share = (standing[after] - standing[first]) / max(after - first, 1)
+        ends_at_start = _near(smoothed, rests[drive.end], start_m, cell_m)
+        if start_m is None or ends_at_start:
+            least = LEAST_CELLS_TO_START if ends_at_start else LEAST_CELLS
+            most = MOST_STANDING_TO_START if ends_at_start else MOST_STANDING
+            steady = drive.length_m > least * cell_m and share < most
+            chosen += [drive] if steady and not any(map(drive.overlaps, chosen)) else []
+    return chosen
+
+
+def _candidates(smoothed: Smoothed, rests: Sequence[Rest]) -> list[_Drive]:
+    """From every rest to the next ones, without a long rest in between."""
+    places_m = [rest.place_m(smoothed) for rest in rests]
+    drives: list[_Drive] = []
+    for start in range(len(rests)):
+        for end in range(start + 1, min(start + 2 + MOST_FALSE_STOPS, len(rests))):
+            drives.append(_Drive(math.dist(places_m[start], places_m[end]), start, end))
+            if rests[end].duration_s(smoothed) >= LONG_REST_S:
+                break
+    return drives
+
+
+def _near(smoothed: Smoothed, rest: Rest, start_m: Place | None, cell_m: float) -> bool:
+    return start_m is not None and math.dist(rest.place_m(smoothed), start_m) < START_CELLS * cell_m
+
+
+LONGEST_GAP_S = 1.05
+"""About half of a move."""
+LONGEST_GAP_FRAMES = 3.5
+"""At a low frame rate a lost frame or two are no reason yet."""
+
+
+def longest_seen(smoothed: Smoothed, rests: Sequence[Rest]) -> Sequence[Rest]:
+    """The rests of the longest part of a demonstration in which the demonstrator was never lost for long.
+
+    A gap within a rest ends one part there and begins the next: the demonstrator may have gone and returned.
+    """
+    if not rests:
+        return rests
+    parts: list[list[Rest]] = [[rests[0]]]
+    lost = _long_gaps(smoothed)
+    for before, rest in zip([None, *rests[:-1]], rests, strict=True):
+        if before and lost[before.last : rest.first].any():
+            parts.append([])
+        if before:
+            parts[-1].append(rest)
+        if lost[rest.first : rest.last].any():
+            parts.append([rest])
+    return max(parts, key=len)
+
+
+def _long_gaps(smoothed: Smoothed) -> np.ndarray:
+    """Whether the demonstrator was lost for long after each position."""
+    gaps_s = np.diff(smoothed.t_s)
+    return np.asarray(gaps_s > max(LONGEST_GAP_S, LONGEST_GAP_FRAMES * float(np.median(gaps_s))))

@@ -1,0 +1,1 @@
+"""From a camera's frame to where the demonstrator stands."""

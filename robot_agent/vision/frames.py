@@ -1,0 +1,32 @@
+"""One image as a camera sent it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+BYTES_PER_PIXEL = 2
+PIXEL_FORMATS = ("rgb565", "yuyv")
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One image as the sensor sent it, row by row from the top.
+
+    `rgb565` has two bytes a pixel, the high byte first, as e-pucks send it; `yuyv` has Y0 U Y1 V for
+    each two pixels. `t_ns` is the time of the exposure of the row at the horizon.
+    """
+
+    t_ns: int
+    width: int
+    height: int
+    pixel_format: str
+    data: bytes
+
+    def __post_init__(self) -> None:
+        if self.pixel_format not in PIXEL_FORMATS:
+            raise ValueError(f"pixel format {self.pixel_format!r}: use one of {', '.join(PIXEL_FORMATS)}")
+        expected = self.width * self.height * BYTES_PER_PIXEL
+        if len(self.data) != expected:
+            raise ValueError(
+                f"a {self.width} x {self.height} frame has {expected} bytes, not {len(self.data)}"
+            )

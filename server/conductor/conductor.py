@@ -1,0 +1,113 @@
+"""Runs one trial: tells everyone that it has begun, follows the learners, and ends it."""
+
+from __future__ import annotations
+
+from server.conductor.camera_views import World
+from server.conductor.carrier import Hand, Publish
+from server.conductor.copy_errors import CopyErrors
+from server.conductor.visits import Visits
+from server.hubs.hub import Batch
+from swarm.clock import NS_PER_S
+from swarm.config.experiment import Experiment
+from swarm.errors import RunFailedError
+from swarm.geometry import Grid
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
+from swarm.runtime.subscription import Feed, Feeds, Received
+
+RUN_STATE_PERIOD_NS = NS_PER_S
+STUCK_AFTER_NS = 600 * NS_PER_S
+
+
+class Conductor:
+    """Follows a trial from what is on the wire, and speaks to the robots by the same wire."""
+
+    def __init__(self, experiment: Experiment, trial: int, publish: Publish, hand: Hand) -> None:
+        self._experiment = experiment
+        self._trial = trial
+        self._publish = publish
+        self._moves = Feed(topics.MOVE)
+        self._best_paths = Feed(topics.BEST_PATH)
+        self._paths = Feed(topics.PATH)
+        self._visit_words = Feed(topics.VISIT)
+        self._observations = Feed(topics.OBSERVATION)
+        self._truths = Feed(topics.TRUTH)
+        heard = (self._moves, self._best_paths, self._paths, self._visit_words, self._observations)
+        self._feeds = Feeds(heard)
+        self._feeds_while_watching = Feeds((*heard, self._truths))
+        self._goal = Grid(experiment.arena.columns, experiment.arena.rows).goal
+        self._visits = Visits(experiment, publish, hand)
+        self._world = World(experiment, publish)
+        watched_by = {robot.id: robot.watches for robot in experiment.learners if robot.watches}
+        self._copy_errors = CopyErrors(watched_by, publish)
+        self._state_due_ns = 0
+        self._moved_ns = 0
+        self._ending = False
+        self.moves = {robot.id: 0 for robot in experiment.robot}
+        """Moves made so far, by robot."""
+        self.best_path = {robot.id: 0 for robot in experiment.learners}
+        """The newest best path length, by learner; 0 before the first."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether every learner has made its moves and everyone has been told."""
+        return self._ending
+
+    @property
+    def bad_messages(self) -> int:
+        """Messages refused so far."""
+        return self._feeds_while_watching.bad
+
+    def step(self, batch: Batch) -> None:
+        """Take in a batch; announce the run's state once a second and when it changes."""
+        watching = self._visits.watching
+        (self._feeds_while_watching if watching else self._feeds).put(batch.items)
+        for move in self._moves.take():
+            self._note_move(move, batch.t_ns)
+        for best in self._best_paths.take():
+            self.best_path[best.robot] = best.message.length
+        self._conduct_visits(batch.t_ns)
+        self._ending = all(self.moves[learner] >= self._experiment.run.moves for learner in self.best_path)
+        if batch.t_ns >= self._state_due_ns or self._ending:
+            self._state_due_ns = batch.t_ns + RUN_STATE_PERIOD_NS
+            self.announce(pb.RunState.ENDED if self._ending else pb.RunState.RUNNING)
+
+    def _note_move(self, received: Received[pb.Move], t_ns: int) -> None:
+        robot, move = received.robot, received.message
+        self.moves[robot] = move.number
+        self._moved_ns = t_ns
+        self._copy_errors.moved(robot, move, received.header.t_ns)
+        if move.next_state == self._goal:
+            self._visits.track_ended(robot, move.track)
+
+    def _conduct_visits(self, t_ns: int) -> None:
+        for path in self._paths.take():
+            if path.message.visit:
+                self._visits.path_remembered(path.robot)
+        for observation in self._observations.take():
+            self._copy_errors.observed(observation.robot, observation.message)
+        for word in self._visit_words.take():
+            self._visits.heard(word.robot, word.message)
+            if word.message.phase == pb.Visit.DONE:
+                self._copy_errors.visit_done(word.robot, word.message, t_ns)
+        self._copy_errors.step(t_ns)
+        self._visits.order_due(t_ns)
+        self._world.step(self._truths.take(), self._visits.watching)
+
+    def check_progress(self, t_ns: int) -> None:
+        """RunFailedError if no robot has moved for ten minutes of the run: a simulation waits for nobody."""
+        if t_ns - self._moved_ns > STUCK_AFTER_NS:
+            behind = [robot for robot, moves in self.moves.items() if moves < self._experiment.run.moves]
+            minutes = STUCK_AFTER_NS // NS_PER_S // 60
+            raise RunFailedError(
+                f"no robot has moved for {minutes} min of the run; waiting: {', '.join(behind)}"
+            )
+
+    def announce(self, phase: pb.RunState.Phase.ValueType) -> None:
+        """Tell everyone the phase of the trial."""
+        state = pb.RunState(phase=phase, trial=self._trial, experiment=self._experiment.run.name)
+        self._publish(topics.RUN_STATE, state, "")
+
+    def event(self, name: str, text: str, level: pb.Event.Level.ValueType = pb.Event.INFO) -> None:
+        """Put something that a person should know into the log."""
+        self._publish(topics.SERVER_EVENT, pb.Event(level=level, name=name, text=text), "")

@@ -1,0 +1,91 @@
+"""Real or scaled time, the hub's side: everything on the wire, as it comes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from typing import TypeVar
+
+from google.protobuf.message import Message
+
+from server.hubs.hub import Batch
+from swarm.clock import WallClock
+from swarm.config.experiment import Experiment
+from swarm.messages.header import Header, Item
+from swarm.messages.topics import Delivery, Topic
+from swarm.runtime.liveliness import present
+from swarm.runtime.node import Sequencer
+from swarm.runtime.zenoh_session import Bus, Sample, Sender
+
+M = TypeVar("M", bound=Message)
+
+EVERYTHING = ("robot/**", "tracker/**", "run/**", "server/**", "sim/**")
+
+
+class LiveHub:
+    """Hears every key of the swarm; a batch is what arrived in one period of the clock."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        clock: WallClock,
+        experiment: Experiment,
+        check: Callable[[], None],
+        warn: Callable[[str], None],
+    ) -> None:
+        self._bus = bus
+        self._clock = clock
+        self._ticks: Iterator[int] = clock.ticks(experiment.simulation.tick_s)
+        self._epoch = time.time_ns()
+        self._robots = [robot.id for robot in experiment.robot]
+        self._check = check
+        self._warn = warn
+        self._inboxes = [bus.inbox(key, Delivery.EVERY) for key in EVERYTHING]
+        self._senders: dict[str, Sender] = {}
+        self._sequencer = Sequencer()
+        self.without_header = 0
+        """Messages that were left out because nothing sensible says who sent them when."""
+
+    def start(self) -> None:
+        """Wait until every robot of the experiment is alive; name those that are missing."""
+        named_s = time.monotonic()
+        while missing := sorted(
+            set(self._robots) - {presence.name for presence in present(self._bus, "robot")}
+        ):
+            self._check()
+            next(self._ticks)
+            if time.monotonic() - named_s > 5.0:
+                named_s = time.monotonic()
+                self._warn(f"waiting for {', '.join(missing)}")
+
+    def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
+        key = topic.key(robot)
+        header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
+        if key not in self._senders:
+            self._senders[key] = self._bus.sender(key, topic.delivery)
+        self._senders[key].put(message.SerializeToString(), attachment=header.pack())
+
+    def advance(self) -> None:
+        """In real time the processes need no leave."""
+
+    def gather(self) -> Batch:
+        t_ns = next(self._ticks)
+        self._check()
+        return Batch(t_ns, [item for inbox in self._inboxes for item in self._items(inbox.poll())])
+
+    def unsent(self) -> Batch:
+        """What has arrived by now: the server's own messages come back over the wire like any other."""
+        return Batch(
+            self._clock.now_ns(), [item for inbox in self._inboxes for item in self._items(inbox.poll())]
+        )
+
+    def finish(self) -> None:
+        """The run's state ENDED has told the robots already."""
+
+    def _items(self, samples: list[Sample]) -> Iterator[Item]:
+        for sample in samples:
+            header = Header.unpack(sample.attachment)
+            if header is None or header.t_ns < 0:
+                self.without_header += 1
+            else:
+                yield Item(sample.key, header, sample.payload)

@@ -1,0 +1,1 @@
+"""The processes of a simulated trial, started, watched and ended."""

@@ -1,0 +1,119 @@
+"""What a trial plays on: simulated robots in processes of ours, or the robots of a laboratory."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from server.conductor.carrier import Hand, Operator, SimulatedHand
+from server.hubs.hub import Hub
+from server.hubs.live import LiveHub
+from server.hubs.lockstep import LockstepHub
+from server.processes.cpu_affinity import available_cores, keeping_to, spread
+from server.processes.run_table import Pace, run_table
+from server.processes.supervisor import ProcessSpec, Supervisor
+from swarm.clock import scaled_clock, unix_clock
+from swarm.config.experiment import Experiment
+from swarm.runtime.liveliness import Presence, claim
+from swarm.runtime.lockstep import patient
+from swarm.runtime.zenoh_session import Bus, BusSettings
+
+LOCKSTEP_BATCHES_BETWEEN_FLUSHES = 1000
+LIVE_FLUSH_S = 0.5
+"""Real seconds of messages that a killed server may lose."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Where the messages come together, who carries robots, and how often the log is flushed."""
+
+    hub: Hub
+    hand: Hand
+    batches_between_flushes: int
+    waits_for_people: bool = False
+
+
+SetStage = Callable[[int, Path, Path], AbstractContextManager[Stage]]
+"""Makes the stage of a trial from its number, the experiment's file, and a directory for output."""
+
+Warn = Callable[[str], None]
+
+
+def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetStage:
+    """Processes on this machine, in lockstep (`speed` None) or so many times as fast as life."""
+
+    @contextmanager
+    def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:
+        pace = Pace(speed is None, speed or 1.0, time.monotonic_ns())
+        cores = available_cores()
+        with (
+            socket_endpoint() as endpoint,
+            keeping_to(cores[0]) if pace.lockstep else nullcontext(),
+            Bus(_hub_settings(endpoint, pace)) as bus,
+        ):
+            specs = run_table(experiment, file, endpoint, trial, pace, output)
+            claim(bus, _presence())
+            with Supervisor(specs, output, spread(len(specs), cores)) as supervisor:
+                hub, flush_every = _hub(experiment, bus, pace, specs, supervisor.check, warn)
+                yield Stage(hub, SimulatedHand(hub.publish), flush_every)
+
+    return stage
+
+
+def _hub_settings(endpoint: str, pace: Pace) -> BusSettings:
+    settings = BusSettings(endpoint, hub=True)
+    return patient(settings) if pace.lockstep else settings
+
+
+def _hub(
+    experiment: Experiment,
+    bus: Bus,
+    pace: Pace,
+    specs: list[ProcessSpec],
+    check: Callable[[], None],
+    warn: Warn,
+) -> tuple[Hub, int]:
+    """The hub of a pace, and how many of its batches come between two flushes."""
+    if not pace.lockstep:
+        clock = scaled_clock(pace.started_ns, pace.speed)
+        return LiveHub(bus, clock, experiment, check, warn), _live_flush(experiment, pace.speed)
+    names, ticks = [spec.name for spec in specs], experiment.ticks_per_exchange
+    tick_s = experiment.simulation.tick_s
+    hub = LockstepHub(bus, names, tick_s, check, warn, ticks_per_exchange=ticks)
+    return hub, LOCKSTEP_BATCHES_BETWEEN_FLUSHES // ticks
+
+
+@contextmanager
+def socket_endpoint() -> Iterator[str]:
+    """A socket file that only this user can open: no port is taken, and a message takes less time."""
+    with TemporaryDirectory(prefix="swarm-") as place:
+        yield f"unixsock-stream/{place}/hub"
+
+
+def laboratory(experiment: Experiment, bus: Bus, warn: Warn) -> SetStage:
+    """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
+
+    @contextmanager
+    def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:  # noqa: ARG001
+        claim(bus, _presence())
+        hub = LiveHub(bus, unix_clock(), experiment, _nothing_to_check, warn)
+        yield Stage(hub, Operator(hub.publish, warn), _live_flush(experiment, 1.0), waits_for_people=True)
+
+    return stage
+
+
+def _presence() -> Presence:
+    return Presence("server", "server", socket.gethostname(), time.time_ns())
+
+
+def _live_flush(experiment: Experiment, speed: float) -> int:
+    return max(1, round(LIVE_FLUSH_S * speed / experiment.simulation.tick_s))
+
+
+def _nothing_to_check() -> None:
+    """The laboratory's processes are not ours: who is missing shows by presence and health."""

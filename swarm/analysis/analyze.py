@@ -1,0 +1,128 @@
+"""From logs to everything that `swarm analyze` leaves behind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+
+from swarm.analysis.comparison import compare_all
+from swarm.analysis.copying.figures import copying_figures
+from swarm.analysis.copying.paths import path_table
+from swarm.analysis.copying.summary import Copying, read_copying
+from swarm.analysis.inputs import Inputs, default_out, find_inputs
+from swarm.analysis.learning_curves import RunCurves, curve_table, run_curves, trial_table
+from swarm.analysis.plots import plot_curves, save_png
+from swarm.analysis.report import report
+from swarm.analysis.results_directory import AnalysisDirectory
+from swarm.analysis.summary import Summary
+from swarm.logs.identity import LogIdentity
+from swarm.logs.parquet import LogContent, Reading, read_logs
+
+_DAMAGE_SHOWN = 3
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a call of `swarm analyze` asks for."""
+
+    runs: Sequence[Path]
+    out: Path | None = None
+    sampled: bool = True
+    """Also tables of poses, commands and truths, which are nearly all of a log."""
+    threshold: int = 12
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What came of it."""
+
+    summary: Summary
+    directory: Path
+    files: dict[str, Path]
+
+    def as_json(self) -> dict[str, Any]:
+        files = {name: str(path) for name, path in self.files.items()}
+        return {"analysis": str(self.directory), "files": files, **self.summary.as_json()}
+
+
+def analyze(request: Request, show: Callable[[int], object] = lambda _: None) -> Analysis:
+    """Read the logs, write tables, curves, figure and report; `show` is told of messages read."""
+    out = request.out or default_out(request.runs)
+    inputs = find_inputs(request.runs)
+    directory = AnalysisDirectory.open(out, inputs)
+    reading = read_logs(inputs.logs, directory.tables, request.sampled, show)
+    curves = run_curves(pl.read_parquet(reading.tables["best_paths"]))
+    notes = [*inputs.notes, *_reading_notes(inputs, reading), *curves.notes]
+    copying = read_copying(reading.tables, {str(log.path): log.cell_m for log in inputs.logs})
+    summary = Summary(_title(inputs), reading, curves, compare_all(curves), request.threshold, notes, copying)
+    files = _write(directory, curves, summary)
+    analysis = Analysis(summary, directory.path, files | reading.tables)
+    directory.write_json("summary.json", analysis.as_json())
+    return analysis
+
+
+def _write(directory: AnalysisDirectory, curves: RunCurves, summary: Summary) -> dict[str, Path]:
+    means, trials = curve_table(curves), trial_table(curves)
+    drawn = _write_figures(directory, curves, summary)
+    return {
+        **drawn,
+        "curves.csv": directory.write("curves.csv", means.write_csv),
+        "curves.parquet": directory.write("curves.parquet", means.write_parquet),
+        "trials.csv": directory.write("trials.csv", trials.write_csv),
+        "trials.parquet": directory.write("trials.parquet", trials.write_parquet),
+        "report.md": directory.write_text("report.md", report(summary, "curves.png", drawn)),
+        **_write_paths(directory, summary.copying),
+    }
+
+
+def _write_figures(directory: AnalysisDirectory, curves: RunCurves, summary: Summary) -> dict[str, Path]:
+    figures = {"curves.png": plot_curves(curves, summary.title)}
+    if summary.copying:
+        figures["curves_paper_axes.png"] = plot_curves(curves, summary.title, paper_axes=True)
+    figures |= copying_figures(summary.copying)
+    return {name: directory.write(name, partial(save_png, figure)) for name, figure in figures.items()}
+
+
+def _write_paths(directory: AnalysisDirectory, copying: Copying) -> dict[str, Path]:
+    """The table of remembered paths, if there are any."""
+    if not copying.paths:
+        return {}
+    tables = AnalysisDirectory(directory.tables)
+    return {"copied_paths": tables.write("copied_paths.parquet", path_table(copying.paths).write_parquet)}
+
+
+def _title(inputs: Inputs) -> str:
+    names = list(dict.fromkeys(log.run for log in inputs.logs))
+    shown = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+    return f"{shown}: best path while learning"
+
+
+def _reading_notes(inputs: Inputs, reading: Reading) -> list[str]:
+    best_paths = pl.read_parquet(reading.tables["best_paths"], columns=["log", "robot"])
+    reported = set(best_paths.unique().iter_rows())
+    notes = [note for log in reading.logs for note in _damage_notes(log)]
+    notes += [note for log in inputs.logs for note in _silent_notes(log, reported)]
+    return notes
+
+
+def _damage_notes(log: LogContent) -> list[str]:
+    name = log.identity.path
+    notes = [f"{name}: {damage}" for damage in log.damage[:_DAMAGE_SHOWN]]
+    if len(log.damage) > _DAMAGE_SHOWN:
+        notes.append(f"{name}: {len(log.damage) - _DAMAGE_SHOWN} more damaged places")
+    if log.rejected:
+        first = log.rejected[0]
+        example = f"{first.key} number {first.sequence}: {first.reason}"
+        notes.append(f"{name}: messages that could not be decoded were left out, such as {example}")
+    return notes
+
+
+def _silent_notes(log: LogIdentity, reported: set[tuple[str, str]]) -> list[str]:
+    """Learners that made too few moves for a single point of their curve."""
+    silent = sorted(robot for robot in log.learners if (str(log.path), robot) not in reported)
+    return [f"{log.path}: {robot} reported no best path and is left out" for robot in silent]

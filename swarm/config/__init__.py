@@ -1,0 +1,1 @@
+"""Experiment files: TOML to typed settings."""

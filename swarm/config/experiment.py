@@ -1,0 +1,316 @@
+"""What an experiment file says: the run, the arena, the rules of learning, the robots.
+
+`Experiment.load` is the one door: it also checks what no single value shows, such as two robots with
+one id or compartments that overlap.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from pathlib import Path
+from typing import Annotated
+
+from swarm.config.toml_files import Between, ConfigFile
+from swarm.errors import nearest
+from swarm.geometry import Compartment, Grid, Pose
+from swarm.learning.memory import Approach, ObservedPath
+from swarm.messages.topics import is_id
+
+NonNegative = Between(0)
+
+BEYOND_CORNER_M = 0.05
+
+
+class Role(Enum):
+    """What a robot does in its compartment."""
+
+    LEARNER = "learner"
+    EXPERT = "expert"
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """[run]: how long, how often, and from which seed."""
+
+    name: str
+    """The run's name, an id: it also names the run's directory."""
+    moves: Annotated[int, Between(1, 10_000_000)] = 15_000
+    """Moves of each learner in a trial; the paper's 15,000 take about 10 hours on robots."""
+    trials: Annotated[int, Between(1, 10_000)] = 1
+    """Repetitions, each with new robots and random numbers of its own."""
+    seed: Annotated[int, Between(0, 2**63 - 1)] = 1
+    """The one root of all randomness; the same seed gives the same log."""
+
+
+@dataclass(frozen=True)
+class ArenaSettings:
+    """[arena]: the floor, and the grid of every compartment."""
+
+    width_m: Annotated[float, Between(0.1, 100)] = 3.0
+    """The floor, from west to east."""
+    height_m: Annotated[float, Between(0.1, 100)] = 3.0
+    """The floor, from south to north."""
+    cell_m: Annotated[float, Between(0.05, 10)] = 0.12
+    """The side of a cell."""
+    columns: Annotated[int, Between(2, 100)] = 10
+    """Cells of a compartment, from west to east."""
+    rows: Annotated[int, Between(2, 100)] = 10
+    """Cells of a compartment, from north to south."""
+
+
+@dataclass(frozen=True)
+class LearningSettings:
+    """[learning]: the rules of equations 2 to 7, and the robots' pace."""
+
+    epsilon: Annotated[float, Between(0, 1)] = 0.1
+    """Probability of a random move."""
+    beta: Annotated[float, Between(0, 0.999)] = 0.5
+    """Regulates the initial imitation probability; below 1 for the convergence proof."""
+    approach: Approach = Approach.AVERAGE_Q
+    """How R is counted: not at all, by completed replays (eq. 2), or by replays that raised Q (eq. 3, 4)."""
+    capacity: Annotated[int, Between(1, 1000)] = 10
+    """Paths in the memory; on robots a full memory copies no more."""
+    discount_rate_per_s: Annotated[float, Between(0, 100)] = 0.149
+    """Eq. 7's beta: 0.149/s is a discount of 0.7 over a move of 2.4 s."""
+    blocked_move_s: Annotated[float, Between(0, 60)] = 0.5
+    """A move into a wall is decided, not driven; the robot stands still this long."""
+    rest_s: Annotated[float, Between(0, 60)] = 1.5
+    """Standing still in the goal and in the start: what tells a watcher where a journey ends."""
+    path_length_cap: Annotated[int, Between(1, 100_000)] = 100
+    """What a greedy path that never arrives counts as."""
+
+
+@dataclass(frozen=True)
+class BodySettings:
+    """[body]: faults of the simulated wheels."""
+
+    slip_sd: Annotated[float, Between(0, 0.5)] = 0.01
+    """Standard deviation of each wheel's relative slip in a tenth of a second."""
+    gain_error_sd: Annotated[float, Between(0, 0.5)] = 0.015
+    """Standard deviation of each wheel's relative error in size."""
+    latency_s: Annotated[float, Between(0, 1)] = 0.06
+    """From a command to its effect."""
+
+
+@dataclass(frozen=True)
+class TrackerSettings:
+    """[tracker]: which tracking system and, for the simulated one, its faults."""
+
+    backend: str = "sim"
+    """The tracking system; see how-to-add-a-tracker.md."""
+    rate_hz: Annotated[float, Between(0.1, 1000)] = 10.0
+    """Poses of each robot a second."""
+    noise_m: Annotated[float, NonNegative] = 0.001
+    """Standard deviation of x and of y."""
+    noise_rad: Annotated[float, NonNegative] = 0.0087
+    """Standard deviation of the heading."""
+    latency_s: Annotated[float, Between(0, 5)] = 0.06
+    """At least this late; in lockstep a pose arrives two exchanges after it was true."""
+    loss: Annotated[float, Between(0, 1)] = 0.02
+    """Share of poses that are missing."""
+    blackouts_per_hour: Annotated[float, NonNegative] = 10.0
+    """Longer losses of one robot."""
+    blackout_s: Annotated[float, NonNegative] = 3.0
+    """How long such a loss lasts."""
+
+
+class Watching(Enum):
+    """How what was seen becomes moves."""
+
+    BEST = "best"
+    """320 x 240, edges to a fraction of a pixel, smoothing, and the moves that explain all of it."""
+    PAPER = "paper"
+    """160 x 120, the number of the patch's pixels, regression lines."""
+
+
+@dataclass(frozen=True)
+class VisitSettings:
+    """[visits]: when robots watch others, and how (section 3.4)."""
+
+    every_tracks: Annotated[int, Between(1, 100_000)] = 10
+    """A learner visits at the start and after so many journeys, until its memory is full."""
+    duration_s: Annotated[float, Between(1, 600)] = 30.0
+    """How long a learner watches."""
+    frames_per_s: Annotated[float, Between(0.5, 30)] = 5.0
+    """Camera frames that are looked at while watching."""
+    moves: Annotated[int, Between(1, 100)] = 5
+    """Consecutive moves that are remembered of what was seen."""
+    profile: Watching = Watching.BEST
+    """How frames become moves; see copying.md."""
+
+
+@dataclass(frozen=True)
+class CameraSettings:
+    """[camera]: the camera of robots that watch."""
+
+    calibration: str = ""
+    """A calibration file (see deploy/cameras); the simulated camera has one built in."""
+    colours: str = ""
+    """A colour table made by `robot-agent calibrate`; the simulated camera learns one at the start."""
+    conditions: str = "realistic"
+    """Light of the simulated camera: realistic, hard, dark or clean."""
+
+
+@dataclass(frozen=True)
+class SimulationSettings:
+    """[simulation]: the length of a tick and the number of processes for the robots."""
+
+    tick_s: Annotated[float, Between(0.01, 1)] = 0.1
+    """Control period of every robot, and the length of a lockstep tick."""
+    ticks_per_exchange: Annotated[int, Between(1, 10)] = 2
+    """Ticks that the processes of a lockstep make before they exchange messages; fewer if a camera takes more
+    frames. A pose comes two exchanges late, 0.4 s; with 1 it is 0.2 s, and a run takes half as long again."""
+    processes: Annotated[int, Between(0, 1000)] = 0
+    """Processes that host the robots; 0 gives each robot its own, as on hardware."""
+
+
+@dataclass(frozen=True)
+class RobotSettings:
+    """[[robot]]: one robot, its compartment and what it may imitate."""
+
+    id: str
+    """The robot's name in every key and in the log: a small letter, then at most 31 of a-z, 0-9, _ and -."""
+    south_west_m: tuple[float, float]
+    """The compartment's corner in the arena frame."""
+    driver: str = "sim"
+    """What moves it; see how-to-add-a-driver.md."""
+    role: Role = Role.LEARNER
+    """A learner learns; an expert follows the shortest path indefinitely."""
+    condition: str = ""
+    """Learners of one condition share a curve; the role's name if empty."""
+    watches: str = ""
+    """The robot whose moves it copies through its camera; none if empty."""
+    skirt: str = "red"
+    """The colour of its skirt, by which others see it."""
+    paths: tuple[tuple[str, ...], ...] = ()
+    """Paths given at the start, each a list of compass moves."""
+
+    @property
+    def group(self) -> str:
+        return self.condition or self.role.value
+
+    def given_paths(self) -> tuple[ObservedPath, ...]:
+        return tuple(ObservedPath.parse(path) for path in self.paths)
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """An experiment file, checked."""
+
+    run: RunSettings
+    robot: tuple[RobotSettings, ...]
+    arena: ArenaSettings = field(default_factory=ArenaSettings)
+    learning: LearningSettings = field(default_factory=LearningSettings)
+    body: BodySettings = field(default_factory=BodySettings)
+    tracker: TrackerSettings = field(default_factory=TrackerSettings)
+    visits: VisitSettings = field(default_factory=VisitSettings)
+    camera: CameraSettings = field(default_factory=CameraSettings)
+    simulation: SimulationSettings = field(default_factory=SimulationSettings)
+
+    @classmethod
+    def load(cls, path: Path) -> Experiment:
+        """Read and check an experiment file; UserError names the file, the line and the cure."""
+        file = ConfigFile(path)
+        experiment = file.settings(cls)
+        _check(experiment, file)
+        return experiment
+
+    def changed(
+        self, seed: int | None = None, moves: int | None = None, processes: int | None = None
+    ) -> Experiment:
+        """The same experiment with what a command line gave in place of the file's values."""
+        run = replace(
+            self.run,
+            seed=self.run.seed if seed is None else seed,
+            moves=self.run.moves if moves is None else moves,
+        )
+        simulation = self.simulation
+        if processes is not None:
+            simulation = replace(simulation, processes=processes)
+        return replace(self, run=run, simulation=simulation)
+
+    def compartment(self, robot: RobotSettings) -> Compartment:
+        """The walled square that belongs to a robot."""
+        grid = Grid(self.arena.columns, self.arena.rows)
+        return Compartment(*robot.south_west_m, grid, self.arena.cell_m)
+
+    def observers_place(self, demonstrator: RobotSettings) -> Pose:
+        """Where a robot stands to watch: just outside the compartment's south-east corner, facing in.
+
+        The paper's place, in that corner, lies inside the goal cell, which the demonstrator enters.
+        """
+        watched = self.compartment(demonstrator)
+        return Pose(watched.east_m + BEYOND_CORNER_M, watched.south_m - BEYOND_CORNER_M, 0.75 * math.pi)
+
+    def robot_named(self, name: str) -> RobotSettings:
+        return next(robot for robot in self.robot if robot.id == name)
+
+    @property
+    def ticks_per_exchange(self) -> int:
+        """As in the settings; with cameras at most those between two frames, which would else be the same."""
+        between_frames = math.floor(1 / (self.visits.frames_per_s * self.simulation.tick_s) + 1e-9)
+        watched = any(robot.watches for robot in self.robot)
+        most = max(1, between_frames) if watched else self.simulation.ticks_per_exchange
+        return min(self.simulation.ticks_per_exchange, most)
+
+    @property
+    def learners(self) -> tuple[RobotSettings, ...]:
+        return tuple(robot for robot in self.robot if robot.role is Role.LEARNER)
+
+
+def _check(experiment: Experiment, file: ConfigFile) -> None:
+    if not is_id(experiment.run.name):
+        raise file.error(("run", "name"), f"'name' is {experiment.run.name!r}; {_ID_RULE}")
+    if not experiment.learners:
+        raise file.error(("robot", 0, "role"), "no robot is a learner: there is nothing to learn or to plot")
+    for number, robot in enumerate(experiment.robot):
+        _check_robot(experiment, number, robot, file)
+
+
+_ID_RULE = "an id starts with a small letter and has at most 32 of a-z, 0-9, _ and -"
+
+
+def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number)
+    for name, value in (("id", robot.id), ("condition", robot.group)):
+        if not is_id(value):
+            raise file.error((*where, name), f"{name!r} is {value!r}; {_ID_RULE}")
+    if robot.paths and robot.role is not Role.LEARNER:
+        raise file.error((*where, "paths"), f"{robot.id!r} is no learner: it cannot be given paths")
+    if len(robot.paths) > experiment.learning.capacity:
+        raise file.error((*where, "paths"), f"{len(robot.paths)} paths do not fit in [learning] capacity")
+    try:
+        robot.given_paths()
+    except ValueError as error:
+        raise file.error((*where, "paths"), str(error)) from error
+    _check_watching(experiment, number, robot, file)
+    _check_place(experiment, number, robot, file)
+
+
+def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number, "watches")
+    known = [other.id for other in experiment.robot if other.id != robot.id]
+    if robot.watches and robot.role is not Role.LEARNER:
+        raise file.error(where, f"{robot.id!r} is no learner: it cannot watch")
+    if robot.watches and robot.watches not in known:
+        raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {nearest(robot.watches, known)}")
+
+
+def _check_place(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number, "south_west_m")
+    place, arena = experiment.compartment(robot), experiment.arena
+    slack_m = 1e-9
+    if (
+        min(place.west_m, place.south_m) < -slack_m
+        or place.east_m > arena.width_m + slack_m
+        or place.north_m > arena.height_m + slack_m
+    ):
+        size = f"{arena.width_m:g} x {arena.height_m:g} m"
+        raise file.error(where, f"the compartment of {robot.id!r} reaches out of the arena of {size}")
+    for other in experiment.robot[:number]:
+        if other.id == robot.id:
+            raise file.error(("robot", number, "id"), f"two robots are called {robot.id!r}")
+        if place.overlaps(experiment.compartment(other)):
+            raise file.error(where, f"the compartments of {other.id!r} and {robot.id!r} overlap")

@@ -1,1 +1,0 @@
-"""One file a study of the paper, and the paper's claims as data."""

@@ -1,1 +1,0 @@
-"""Judged claims as JSON, Markdown and HTML."""

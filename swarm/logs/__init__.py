@@ -1,0 +1,1 @@
+"""Reading logs: records, tables, completeness, damage."""

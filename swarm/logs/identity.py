@@ -1,0 +1,98 @@
+"""Which trial of which run a log holds, by its own metadata."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from swarm.config.experiment import ArenaSettings, Role
+from swarm.logs.reader import LogError, LogReader, open_log
+
+UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class LogIdentity:
+    """A log's place among conditions x trials x seeds."""
+
+    path: Path
+    digest: str
+    """SHA-256 of the file."""
+    run: str
+    seed: int
+    trial: int
+    moves: int
+    """How many each learner was to make."""
+    commit: str
+    """Of the program that recorded it."""
+    conditions: Mapping[str, str]
+    """Of each robot."""
+    learners: frozenset[str]
+    cell_m: float
+    """The side of a cell of the grids."""
+
+    def condition(self, robot: str) -> str:
+        """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""
+        return self.conditions.get(robot, "" if robot in ("tracker", "server", "run") else UNKNOWN)
+
+    @property
+    def replicate(self) -> tuple[int, int]:
+        """(seed, trial): two conditions measured in the same one form a pair."""
+        return self.seed, self.trial
+
+
+def identify(path: Path) -> LogIdentity:
+    """Read a log's metadata; LogError if it is no log of a run."""
+    reader = LogReader(path)
+    metadata = reader.read_metadata()
+    run, robots = metadata.get("run", {}), metadata.get("robots", {})
+    try:
+        words = {robot: _role_and_condition(text) for robot, text in robots.items()}
+        return LogIdentity(
+            path=path,
+            digest=_digest(path),
+            run=run["name"],
+            seed=_count(run["seed"]),
+            trial=_count(run["trial"]),
+            moves=_count(run["moves"]),
+            commit=metadata.get("versions", {}).get("commit", UNKNOWN),
+            conditions={robot: condition for robot, (_, condition) in words.items()},
+            learners=frozenset(robot for robot, (role, _) in words.items() if role == Role.LEARNER.value),
+            cell_m=_cell_m(metadata.get("experiment", {}).get("toml", "")),
+        )
+    except (KeyError, ValueError) as error:
+        reason = "does not say which run and trial it holds: was it recorded by swarm-server?"
+        if reader.damage:
+            reason = f"nothing can be read of it: {reader.damage[0]}"
+        raise LogError(path, reason) from error
+
+
+def _role_and_condition(text: str) -> tuple[str, str]:
+    role, condition = text.split(" ")
+    return role, condition
+
+
+def _cell_m(experiment: str) -> float:
+    """Of the experiment's [arena]; the default where it says nothing that makes sense."""
+    default_m = ArenaSettings().cell_m
+    try:
+        cell_m = float(tomllib.loads(experiment).get("arena", {}).get("cell_m", default_m))
+    except (ValueError, TypeError, AttributeError):
+        return default_m
+    return cell_m if 0 < cell_m < math.inf else default_m
+
+
+def _count(text: str) -> int:
+    value = int(text)
+    if not 0 <= value < 2**63:
+        raise ValueError(f"{text} is out of range")
+    return value
+
+
+def _digest(path: Path) -> str:
+    with open_log(path) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,0 +1,295 @@
+"""The only reader of logs. It trusts nothing: every checksum is verified, memory and time are bounded, and
+of a damaged log it gives everything that is whole, and says where the damage is.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from io import BufferedReader
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+import numpy.typing as npt
+from mcap.opcode import Opcode
+from mcap.records import Channel, Chunk, Message, Metadata, Schema, Statistics
+
+from swarm.errors import UserError
+from swarm.logs.mcap_records import (
+    BROKEN,
+    DamagedChunkError,
+    Entry,
+    FramingError,
+    Record,
+    decoded,
+    indexed_definitions,
+    records,
+    split,
+    unpack,
+)
+from swarm.messages.topics import Topic, topic_of
+
+PART_MESSAGES = 4096
+PART_BYTES = 1024 * 1024
+
+
+@dataclass(frozen=True)
+class LogChannel:
+    """The messages of one key from one start (epoch) of its sender."""
+
+    id: int
+    key: str
+    epoch: int
+    schema: str
+    encoding: str
+
+    @cached_property
+    def topic(self) -> Topic[Any] | None:
+        """Its line of the key table, if its messages are of the type that the table says."""
+        found = topic_of(self.key)
+        if found is None or self.encoding != "protobuf":
+            return None
+        return found[0] if found[0].message.DESCRIPTOR.full_name == self.schema else None
+
+    @property
+    def is_for_viewers(self) -> bool:
+        """Whether the server made its messages out of others, for viewers to draw."""
+        return self.schema.startswith("foxglove.")
+
+    @property
+    def sender(self) -> str:
+        """The robot's id; "tracker", "server" or "run" for a key that names no robot."""
+        found = topic_of(self.key)
+        return (found[1] if found else "") or self.key.split("/")[0]
+
+
+@dataclass(frozen=True)
+class Part:
+    """Messages of one channel in the log's order: `sequence`, `receive_t_ns` and `publish_t_ns` (messages,);
+    `payloads` is empty if the channel's contents were not asked for.
+    """
+
+    channel: LogChannel
+    sequence: npt.NDArray[np.int64]
+    receive_t_ns: npt.NDArray[np.int64]
+    publish_t_ns: npt.NDArray[np.int64]
+    payloads: list[bytes]
+
+
+@dataclass
+class PendingPart:
+    """Collects the messages of one channel until they are worth a part."""
+
+    channel: LogChannel
+    keep_payloads: bool
+    entries: list[Entry] = field(default_factory=list)
+    payload_bytes: int = 0
+
+    def add(self, entries: list[Entry]) -> bool:
+        """Whether the part is large enough now."""
+        if self.keep_payloads:
+            self.payload_bytes += sum(len(entry[3]) for entry in entries)
+        else:
+            entries = [(sequence, receive, publish, b"") for sequence, receive, publish, _ in entries]
+        self.entries += entries
+        return len(self.entries) >= PART_MESSAGES or self.payload_bytes >= PART_BYTES
+
+    def take(self) -> Part:
+        """The part; another one begins."""
+        sequence, receive, publish, payloads = zip(*self.entries, strict=True)
+        self.entries, self.payload_bytes = [], 0
+        return Part(
+            self.channel,
+            np.array(sequence, dtype=np.int64),
+            np.array(receive, dtype=np.uint64).astype(np.int64),
+            np.array(publish, dtype=np.uint64).astype(np.int64),
+            list(payloads) if self.keep_payloads else [],
+        )
+
+
+Wanted = Callable[[LogChannel], bool]
+
+
+def everything(channel: LogChannel) -> bool:
+    """Payloads of every channel are wanted."""
+    return bool(channel.key)
+
+
+def nothing(channel: LogChannel) -> bool:
+    """No payload is wanted: keys, numbers and times are enough."""
+    return not channel.key
+
+
+MAX_EPOCH = 2**63 - 1
+
+
+class LogError(UserError):
+    """A file that cannot be read as a log: `offset_bytes` into it, after `messages` whole messages."""
+
+    def __init__(self, path: Path, reason: str, offset_bytes: int = 0, messages: int = 0) -> None:
+        super().__init__(f"{path}: {reason}")
+        self.offset_bytes = offset_bytes
+        self.messages = messages
+
+
+@dataclass(frozen=True)
+class Damage:
+    """What could not be read, where in the file, and how many messages had been read before."""
+
+    offset_bytes: int
+    messages: int
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.reason} (at byte {self.offset_bytes}, after {self.messages} messages)"
+
+
+class LogReader:
+    """Reads one log once, from front to back.
+
+    `wanted` says which channels' payloads are needed; of the others only numbers and times are kept.
+    What the log says of itself fills while `parts` is gone through and is complete afterwards.
+    """
+
+    def __init__(self, path: Path, wanted: Wanted = everything) -> None:
+        self.path = path
+        self.metadata: dict[str, dict[str, str]] = {}
+        self.channels: dict[int, LogChannel] = {}
+        self.damage: list[Damage] = []
+        self.messages = 0
+        self.recorded_messages: int | None = None
+        """As the log's index says; None if it has none, as when the recorder was killed."""
+        self._wanted = wanted
+        self._schemas: dict[int, str] = {}
+        self._pending: dict[int, PendingPart] = {}
+
+    def parts(self) -> Iterator[Part]:
+        """Every message that is whole; LogError for what is no log, or a log without a single message."""
+        with open_log(self.path) as file:
+            self._know_indexed_channels(file)
+            for record in self._records(file):
+                yield from self._take(record)
+            self._compare_with_index(file.tell())
+        yield from [pending.take() for pending in self._pending.values() if pending.entries]
+        if self.messages == 0:
+            reason = f": {self.damage[0]}" if self.damage else ""
+            raise LogError(self.path, f"no message can be read from this log{reason}")
+
+    def read_metadata(self) -> dict[str, dict[str, str]]:
+        """What stands before the first message: how the log was made. Reads no further."""
+        with open_log(self.path) as file:
+            for record in self._records(file):
+                if record.opcode in (Opcode.CHUNK, Opcode.MESSAGE, Opcode.DATA_END):
+                    break
+                if record.opcode == Opcode.METADATA:
+                    list(self._take(record))
+        return self.metadata
+
+    def _records(self, file: BinaryIO) -> Iterator[Record]:
+        """The file's records, up to the end or to where it cannot be followed any further."""
+        try:
+            yield from records(file)
+        except FramingError as error:
+            if error.offset_bytes == 0:
+                raise LogError(self.path, str(error)) from error
+            self._note(error.offset_bytes, error)
+
+    def _take(self, record: Record) -> Iterator[Part]:
+        """The parts that a record completes. Of one that is damaged nothing is taken."""
+        try:
+            parts = list(self._contents(record))
+        except BROKEN as error:
+            self._note(record.offset_bytes, error)
+        else:
+            yield from parts
+
+    def _contents(self, record: Record) -> Iterator[Part]:
+        found = decoded(record.opcode, record.body)
+        if isinstance(found, Message):
+            entry = (found.sequence, found.log_time, found.publish_time, found.data)
+            yield from self._add({found.channel_id: [entry]})
+        elif isinstance(found, Chunk):
+            content = split(
+                unpack(found.compression, found.data, found.uncompressed_size, found.uncompressed_crc)
+            )
+            for definition in content.definitions:
+                self._define(decoded(definition.opcode, definition.body))
+            yield from self._add(content.entries)
+        else:
+            self._define(found)
+
+    def _define(self, record: object) -> None:
+        """Learn what the log says of itself."""
+        if isinstance(record, Metadata):
+            self.metadata[record.name] = record.metadata
+        elif isinstance(record, Statistics):
+            self.recorded_messages = record.message_count
+        elif isinstance(record, Schema):
+            self._schemas[record.id] = record.name
+        elif isinstance(record, Channel):
+            channel = self._channel(record)
+            if self.channels.setdefault(record.id, channel) != channel:
+                raise DamagedChunkError(f"channel {record.id} is defined twice, for two different keys")
+
+    def _add(self, entries: dict[int, list[Entry]]) -> Iterator[Part]:
+        """The parts that are large enough; nothing is added if any of the channels is unknown."""
+        missing = entries.keys() - self.channels.keys()
+        if missing:
+            raise DamagedChunkError(f"a message of channel {min(missing)}, which is not defined")
+        for number, of_channel in entries.items():
+            pending = self._pending.get(number) or self._begin(self.channels[number])
+            self.messages += len(of_channel)
+            if pending.add(of_channel):
+                yield pending.take()
+
+    def _begin(self, channel: LogChannel) -> PendingPart:
+        pending = PendingPart(channel, self._wanted(channel))
+        self._pending[channel.id] = pending
+        return pending
+
+    def _channel(self, record: Channel) -> LogChannel:
+        epoch = record.metadata.get("epoch", "")
+        schema = self._schemas.get(record.schema_id, "")
+        number = int(epoch) if epoch.isascii() and epoch.isdecimal() and len(epoch) < 20 else 0
+        return LogChannel(record.id, record.topic, min(number, MAX_EPOCH), schema, record.message_encoding)
+
+    def _know_indexed_channels(self, file: BinaryIO) -> None:
+        """The index repeats every channel: a damaged first chunk then costs no other."""
+        try:
+            for definition in indexed_definitions(file):
+                self._define(definition)
+        except BROKEN as error:
+            self._note(0, f"the index is damaged: {error}")
+        file.seek(0)
+
+    def _compare_with_index(self, offset_bytes: int) -> None:
+        """A record that became another one by a flipped bit shows only here."""
+        if not self.damage and self.recorded_messages not in (None, self.messages):
+            reason = f"the index promises {self.recorded_messages} messages, {self.messages} were found"
+            self._note(offset_bytes, reason)
+
+    def _note(self, offset_bytes: int, reason: object) -> None:
+        self.damage.append(Damage(offset_bytes, self.messages, str(reason)))
+
+
+def open_log(path: Path) -> BufferedReader:
+    """Open a regular file for reading; LogError for anything else, without waiting for a pipe."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    except OSError as error:
+        raise LogError(path, f"cannot be opened ({error.strerror})") from error
+    state = os.fstat(descriptor)
+    if not stat.S_ISREG(state.st_mode) or state.st_size == 0:
+        os.close(descriptor)
+        raise LogError(path, f"is not an MCAP log: {_kind(state.st_mode)}")
+    return open(descriptor, "rb")
+
+
+def _kind(mode: int) -> str:
+    if stat.S_ISREG(mode):
+        return "it is empty (0 bytes)"
+    return "it is a directory" if stat.S_ISDIR(mode) else "it is no regular file"

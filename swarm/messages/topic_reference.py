@@ -1,0 +1,59 @@
+"""The key table as documentation: `python -m swarm.messages.topic_reference > docs/keys.md`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from swarm.messages.topics import ALIVE, LOCKSTEP_DONE, LOCKSTEP_TICK, TABLE, Delivery, Topic
+
+_HEAD = """# Everything on the wire
+
+One line of `swarm/messages/topics.py` says everything about a message. `{robot}` stands for a robot's id.
+Payloads are protobuf messages of `swarm/messages/swarm.proto`; 24 bytes beside each carry the sender's epoch,
+the message's number and the run's time (`swarm/messages/header.py`). A robot receives only what the column
+*to robots* marks: its own pose, its own orders and the run's state.
+
+| key | message | meaning | rate | delivery | logged | to robots |
+|---|---|---|---|---|---|---|
+"""
+
+_MEANING = {
+    Delivery.EVERY: "reliable, the sender waits: learning events and orders",
+    Delivery.NEWEST: "reliable while there is room, only the newest counts: poses, commands, states",
+    Delivery.BULK: "dropped first: images",
+}
+
+
+def markdown_table() -> str:
+    """The page docs/keys.md."""
+    rows = "".join(f"| {' | '.join(_cells(topic))} |\n" for topic in TABLE)
+    deliveries = "".join(f"- **{delivery.value}**: {meaning}.\n" for delivery, meaning in _MEANING.items())
+    return f"{_HEAD}{rows}\nDelivery:\n\n{deliveries}\n{_beside_the_table()}"
+
+
+def _cells(topic: Topic[Any]) -> tuple[str, ...]:
+    rate = f"{topic.rate_hz:g} Hz" if topic.rate_hz else "as it happens"
+    return (
+        f"`{topic.pattern}`",
+        f"`{topic.message.DESCRIPTOR.name}`",
+        topic.meaning,
+        rate,
+        topic.delivery.value,
+        _mark(topic.logged),
+        _mark(topic.to_robot),
+    )
+
+
+def _mark(yes: bool) -> str:
+    return "yes" if yes else ""
+
+
+def _beside_the_table() -> str:
+    return (
+        f"Beside the table: `{ALIVE}` are presence tokens (kind is robot, tracker or server), and lockstep\n"
+        f"simulation uses `{LOCKSTEP_TICK}` and `{LOCKSTEP_DONE}`. None of these is logged.\n"
+    )
+
+
+if __name__ == "__main__":
+    print(markdown_table(), end="")

@@ -1,0 +1,91 @@
+"""The conditions of section 2, each made in one place, and the two shapes of study made of them."""
+
+from __future__ import annotations
+
+from swarm.geometry import Move
+from swarm.gridworld.arena import OBSTACLE_100, OPEN_10
+from swarm.gridworld.condition import (
+    AccessEachOther,
+    AccessExpert,
+    Condition,
+    EachOther,
+    Experienced,
+    Expert,
+    GivenPaths,
+    NoTeacher,
+    Teacher,
+)
+from swarm.learning.memory import Approach, ObservedPath
+from swarm.paper.claim import Better
+from swarm.paper.study import Study
+
+BETAS = (0.1, 0.3, 0.5)
+SMALL_HORIZON_STEPS = 20_000
+LARGE_HORIZON_STEPS = 20_000_000
+
+BENEFICIAL = ObservedPath((Move.SE,) * 5)
+"""Figure 2."""
+NOT_BENEFICIAL = ObservedPath((Move.E,) * 5)
+"""Figure 4."""
+EIGHT_PATHS = tuple(ObservedPath((move,) * 20) for move in Move)
+"""Figure 11."""
+
+
+def _small(name: str, teacher: Teacher, beta: float, approach: Approach) -> Condition:
+    return Condition(
+        name,
+        OPEN_10,
+        teacher,
+        epsilon=0.3,
+        beta=beta,
+        approach=approach,
+        goal_reachings=100_000,
+        evaluate_every=10,
+        points=SMALL_HORIZON_STEPS // 10,
+    )
+
+
+def _large(name: str, teacher: Teacher) -> Condition:
+    return Condition(name, OBSTACLE_100, teacher, epsilon=0.5, beta=0.5, steps=LARGE_HORIZON_STEPS)
+
+
+def one_path(approach: Approach, path: ObservedPath, beta: float) -> Condition:
+    """Section 2.2: an agent on the 10 x 10 arena with one path in its memory."""
+    usefulness = "good" if path == BENEFICIAL else "bad"
+    name = f"small_{approach.value}_{usefulness}_{round(100 * beta):02}"
+    return _small(name, GivenPaths((path,)), beta, approach)
+
+
+SMALL_NO_IMITATION = _small("small_no_imitation", NoTeacher(), 0.5, Approach.AVERAGE_Q)
+
+NO_IMITATION = _large("no_imitation", NoTeacher())
+GIVEN_EIGHT_PATHS = _large("eight_paths", GivenPaths(EIGHT_PATHS))
+COPYING_EXPERT = _large("copying_expert", Expert())
+COPYING_EXPERIENCED = _large("copying_experienced", Experienced())
+COPYING_EACH_OTHER = _large("copying_each_other", EachOther())
+ACCESSING_EXPERT = _large("accessing_expert", AccessExpert())
+ACCESSING_EACH_OTHER = _large("accessing_each_other", AccessEachOther())
+
+
+def one_path_study(name: str, title: str, approach: Approach, path: ObservedPath) -> Study:
+    """Figures 3 and 5-9: the three betas beside no imitation, on the 10 x 10 arena."""
+    series = {"no imitation": SMALL_NO_IMITATION}
+    series |= {f"β = {beta}": one_path(approach, path, beta) for beta in BETAS}
+    return Study(name, title, series, SMALL_HORIZON_STEPS, interval_points=10)
+
+
+def large_study(name: str, title: str, series: dict[str, Condition], interval_points: int = 1) -> Study:
+    """Figures 12 and 15-21: agents on the 100 x 100 arena, over time in 100 time units."""
+    return Study(
+        name, title, series, LARGE_HORIZON_STEPS, time_unit_steps=100, interval_points=interval_points
+    )
+
+
+def gains(approach: Approach, path: ObservedPath) -> tuple[Better, ...]:
+    """Every beta is better than no imitation."""
+    return tuple(Better(one_path(approach, path, beta), SMALL_NO_IMITATION) for beta in BETAS)
+
+
+def losses(approach: Approach, path: ObservedPath, betas: tuple[float, ...] = BETAS) -> tuple[Better, ...]:
+    """Every one of these betas is worse than no imitation."""
+    return tuple(Better(SMALL_NO_IMITATION, one_path(approach, path, beta)) for beta in betas)

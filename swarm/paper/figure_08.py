@@ -1,0 +1,24 @@
+"""Figure 8: approach 3 to p_imitate with the beneficial path."""
+
+from __future__ import annotations
+
+from swarm.learning.memory import Approach
+from swarm.paper.claim import Claim
+from swarm.paper.conditions import BENEFICIAL, gains, one_path_study
+from swarm.paper.study import Study
+
+
+def figure() -> Study:
+    title = "Approach 3: Average Q value test, performance of the agent when a beneficial path is given"
+    return one_path_study("fig8", title, Approach.AVERAGE_Q, BENEFICIAL)
+
+
+def claims() -> tuple[Claim, ...]:
+    return (
+        Claim(
+            "fig8",
+            "Once again there is a clear performance increase in the learning speed of the agent when "
+            "the imitated path is beneficial.",
+            gains(Approach.AVERAGE_Q, BENEFICIAL),
+        ),
+    )

@@ -1,0 +1,1 @@
+"""How processes of the swarm find each other, talk, and share time."""

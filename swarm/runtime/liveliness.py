@@ -1,0 +1,55 @@
+"""Who is there: one presence token for each robot, tracker and server, and no two under one name."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from swarm.errors import UserError
+from swarm.messages.topics import ALIVE
+from swarm.runtime.zenoh_session import Bus
+
+
+@dataclass(frozen=True)
+class Presence:
+    """A process that shows that it is alive: kind is robot, tracker or server."""
+
+    kind: str
+    name: str
+    host: str
+    epoch: int
+
+    @property
+    def key(self) -> str:
+        host = re.sub(r"[^A-Za-z0-9_.-]", "-", self.host)
+        return ALIVE.format(kind=self.kind, name=self.name, host=host, epoch=self.epoch)
+
+    @classmethod
+    def parse(cls, key: str) -> Presence:
+        """The presence that a token's key tells of."""
+        _, kind, name, host, epoch = key.split("/")
+        return cls(kind, name, host, int(epoch))
+
+
+def present(bus: Bus, kind: str, name: str = "*") -> list[Presence]:
+    """Everyone of a kind, or with a name, who is alive now."""
+    return [Presence.parse(key) for key in bus.alive(ALIVE.format(kind=kind, name=name, host="*", epoch="*"))]
+
+
+def claim(bus: Bus, presence: Presence) -> None:
+    """Take a name, or UserError with both hosts if another process has it.
+
+    Of two that claim at the same moment, the one with the earlier epoch stays.
+    """
+    _refuse_if_taken(presence, present(bus, presence.kind, presence.name))
+    bus.declare_alive(presence.key)
+    others = [other for other in present(bus, presence.kind, presence.name) if other != presence]
+    _refuse_if_taken(presence, [other for other in others if other.epoch <= presence.epoch])
+
+
+def _refuse_if_taken(presence: Presence, others: list[Presence]) -> None:
+    for other in others:
+        raise UserError(
+            f"{presence.kind} {presence.name!r} is already alive on host {other.host!r}; this one on host "
+            f"{presence.host!r} does not start: stop the other, or give this one an id of its own"
+        )

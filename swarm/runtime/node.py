@@ -1,0 +1,95 @@
+"""How a process of the swarm takes part in a run: it subscribes, publishes, and steps at every tick."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol, TypeVar
+
+from google.protobuf.message import Message
+
+from swarm.clock import WallClock
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
+from swarm.messages.header import Header
+from swarm.messages.topics import Topic
+from swarm.runtime.subscription import Feed
+from swarm.runtime.zenoh_session import Bus, Inbox, Sender
+
+M = TypeVar("M", bound=Message)
+
+Step = Callable[[int], None]
+"""What a process does at a tick, given the run's time in nanoseconds."""
+
+
+class Link(Protocol):
+    """The same for real time and for lockstep, so that no process knows which it is in."""
+
+    keys_received: set[str]
+    """Every key of which this process received a message."""
+
+    def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
+        """A feed of one robot's messages, or of all robots'."""
+
+    def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
+        """Send a message under the robot's key."""
+
+    def run(self, step: Step) -> None:
+        """Step at every tick, until the run ends.
+
+        Steps come one at a time, perhaps on another thread; once this returns or raises there are no more.
+        """
+
+
+class Sequencer:
+    """Numbers the messages of each key from 1."""
+
+    def __init__(self) -> None:
+        self._sequences: dict[str, int] = {}
+
+    def following(self, key: str) -> int:
+        """The number of the key's next message."""
+        number = self._sequences.get(key, 0) + 1
+        self._sequences[key] = number
+        return number
+
+
+class LiveLink:
+    """Takes part over the network at the pace of a clock: on boards, and in simulation at a given speed."""
+
+    def __init__(self, bus: Bus, clock: WallClock, period_s: float, epoch: int) -> None:
+        self._bus = bus
+        self._clock = clock
+        self._period_s = period_s
+        self._epoch = epoch
+        self._sequencer = Sequencer()
+        self._senders: dict[str, Sender] = {}
+        self._inboxes: list[tuple[Inbox, Feed[Any]]] = []
+        self.keys_received: set[str] = set()
+        self._run_states = self.subscribe(topics.RUN_STATE)
+
+    def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
+        """A feed filled at every tick; `*` in a key keeps every message, since it holds many keys."""
+        feed = Feed(topic)
+        inbox = self._bus.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
+        self._inboxes.append((inbox, feed))
+        return feed
+
+    def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
+        key = topic.key(robot)
+        header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
+        if key not in self._senders:
+            self._senders[key] = self._bus.sender(key, topic.delivery)
+        self._senders[key].put(message.SerializeToString(), attachment=header.pack())
+
+    def run(self, step: Step) -> None:
+        for t_ns in self._clock.ticks(self._period_s):
+            self._take_in()
+            step(t_ns)
+            if any(state.message.phase == pb.RunState.ENDED for state in self._run_states.take()):
+                return
+
+    def _take_in(self) -> None:
+        for inbox, feed in self._inboxes:
+            for sample in inbox.poll():
+                self.keys_received.add(sample.key)
+                feed.put(sample.key, Header.unpack(sample.attachment), sample.payload)

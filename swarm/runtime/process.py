@@ -1,0 +1,86 @@
+"""What every process of the swarm does alike: command line, signals, joining the others, leaving.
+
+The command line is argparse with one-line errors, so that a board needs no extra.
+"""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import socket
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import NoReturn
+
+from swarm.clock import scaled_clock, unix_clock
+from swarm.config.experiment import Experiment
+from swarm.errors import UserError
+from swarm.runtime.liveliness import Presence, claim
+from swarm.runtime.lockstep import EPOCH, LockstepLink, patient
+from swarm.runtime.node import Link, LiveLink
+from swarm.runtime.zenoh_session import Bus, BusSettings
+
+DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """A parser whose errors are one line (exit code 2)."""
+
+    def error(self, message: str) -> NoReturn:
+        raise UserError(f"{message} (see `{self.prog} --help`)")
+
+
+def add_common_arguments(parser: argparse.ArgumentParser) -> None:
+    """The experiment, the server, and how time passes."""
+    parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="what is run")
+    parser.add_argument(
+        "--connect", default=DEFAULT_ENDPOINT, metavar="tcp/HOST:PORT", help="the server (%(default)s)"
+    )
+    parser.add_argument(
+        "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"
+    )
+    simulated = parser.add_argument_group("simulation", "the server gives these to the processes it starts")
+    simulated.add_argument("--process", default="", help="the name of this process in a lockstep run")
+    simulated.add_argument("--lockstep", action="store_true", help="step when the server says so")
+    simulated.add_argument("--started-ns", type=int, default=0, help="monotonic time at which the run began")
+    simulated.add_argument("--speed", type=float, default=1.0, help="how many times as fast as life")
+    simulated.add_argument("--trial", type=int, default=0, help="the number of the trial, from 0")
+    simulated.add_argument("--seed", type=int, default=None, help="in place of the experiment's")
+    simulated.add_argument("--moves", type=int, default=None, help="in place of the experiment's")
+
+
+def load_experiment(arguments: argparse.Namespace) -> Experiment:
+    """The experiment that the command line names, with what else it says."""
+    return Experiment.load(arguments.experiment).changed(seed=arguments.seed, moves=arguments.moves)
+
+
+@contextmanager
+def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s: float) -> Iterator[Link]:
+    """The link of a process that is present under its names for as long as the block runs."""
+    epoch = EPOCH if arguments.lockstep else time.time_ns()
+    settings = BusSettings(arguments.connect, config=arguments.zenoh_config)
+    if arguments.lockstep:
+        settings = patient(settings)
+    with Bus(settings) as bus:
+        for name in names:
+            claim(bus, Presence(kind, name, socket.gethostname(), epoch))
+        if arguments.lockstep:
+            yield LockstepLink(bus, arguments.process)
+        elif arguments.started_ns:
+            yield LiveLink(bus, scaled_clock(arguments.started_ns, arguments.speed), period_s, epoch)
+        else:
+            yield LiveLink(bus, unix_clock(), period_s, epoch)
+
+
+def leave_on_signals() -> None:
+    """SIGTERM and SIGHUP end the process as SIGINT does: through every `finally`, with 128 + the number."""
+
+    def leave(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
+        sys.exit(128 + number)
+
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        signal.signal(number, leave)

@@ -1,0 +1,228 @@
+"""The only file that imports zenoh: a hub and clients with explicit endpoints.
+
+Inboxes are polled from the main loop. Only the lockstep, where every wake-up counts, is called on arrival.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Protocol
+
+from swarm.errors import UserError
+from swarm.messages.topics import Delivery
+
+if TYPE_CHECKING:
+    import zenoh
+
+ONE_THREAD = (
+    "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
+)
+QUEUE_DEPTH = 65_536
+WAIT_FOR_ROOM_S = 5.0
+"""What must not be dropped waits so long for room, or as long as the lease; then Zenoh reconnects."""
+
+
+@dataclass(frozen=True)
+class BusSettings:
+    """How a process reaches the others.
+
+    The hub listens on `endpoint` (tcp/HOST:PORT or, on one machine, unixsock-stream/FILE) and routes;
+    clients connect to it and keep trying.
+    `config` is a Zenoh configuration file (JSON5) whose values come first, for TLS and access control.
+    """
+
+    endpoint: str
+    hub: bool = False
+    lease_s: float = 1.5
+    wait_for_hub: bool = True
+    config: Path | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """What arrived: key, payload, and the bytes beside it."""
+
+    key: str
+    payload: bytes
+    attachment: bytes
+
+
+class Inbox:
+    """Samples of one subscription, polled by the main loop."""
+
+    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
+        self._subscriber = subscriber
+
+    def poll(self) -> list[Sample]:
+        """Everything that has arrived since the last call."""
+        samples = []
+        while (sample := self._subscriber.try_recv()) is not None:
+            samples.append(_sample(sample))
+        return samples
+
+
+class Put(Protocol):
+    """Sends a payload, with bytes beside it."""
+
+    def __call__(self, payload: bytes, *, attachment: bytes | None = None) -> None: ...
+
+
+class Sender:
+    """Puts payloads under one key."""
+
+    def __init__(self, publisher: zenoh.Publisher) -> None:
+        self.put: Put = publisher.put
+        """Zenoh's own, without a call in between, which would show in the pace of a lockstep."""
+
+
+class Bus:
+    """A Zenoh session. Use it as a context manager: a session that is not closed hangs at exit."""
+
+    def __init__(self, settings: BusSettings) -> None:
+        os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
+        import zenoh
+
+        zenoh.init_log_from_env_or("error")
+        self._zenoh = zenoh
+        self._tokens: list[zenoh.LivelinessToken] = []
+        self._listening: list[zenoh.Subscriber[None]] = []
+        try:
+            self._session = zenoh.open(_config(settings))
+        except zenoh.ZError as error:
+            raise UserError(_why_not_open(settings, str(error))) from error
+
+    def __enter__(self) -> Bus:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Undeclare everything and leave; presence tokens vanish for the others."""
+        if not self._session.is_closed():
+            self._session.close()  # type: ignore[no-untyped-call]
+
+    def sender(self, key: str, delivery: Delivery) -> Sender:
+        """A publisher with the delivery's guarantees."""
+        control = self._zenoh.CongestionControl
+        priority = self._zenoh.Priority
+        return Sender(
+            self._session.declare_publisher(
+                key,
+                congestion_control=control.BLOCK if delivery is Delivery.EVERY else control.DROP,
+                priority=priority.DATA_LOW if delivery is Delivery.BULK else priority.DATA,
+            )
+        )
+
+    def inbox(self, key: str, delivery: Delivery, *, keep_all: bool = False) -> Inbox:
+        """Subscribe to a key expression.
+
+        Of a `NEWEST` delivery one sample is kept, unless `keep_all` says that the expression holds many keys.
+        """
+        handlers = self._zenoh.handlers
+        newest_only = delivery is Delivery.NEWEST and not keep_all
+        channel = handlers.RingChannel(1) if newest_only else handlers.FifoChannel(QUEUE_DEPTH)
+        return Inbox(self._session.declare_subscriber(key, channel))
+
+    def on_arrival(self, key: str, receive: Callable[[bytes], None]) -> None:
+        """Call `receive` with every payload, for as long as this session lives.
+
+        It is called on Zenoh's own thread, or on that of a sender in the same session. Meanwhile the
+        session neither receives nor sends, and what it raises Zenoh only prints: it must be quick or the
+        session's only work, must not wait for Zenoh, and must keep its errors.
+        """
+        known: set[int] = set()
+
+        def call(sample: zenoh.Sample) -> None:
+            thread = threading.get_ident()
+            if thread not in known:
+                known.add(thread)
+                _keep_python_state()
+            receive(sample.payload.to_bytes())
+
+        handler = self._zenoh.handlers.Callback(call, indirect=False)
+        self._listening.append(self._session.declare_subscriber(key, handler))
+
+    def declare_alive(self, key: str) -> None:
+        """Show presence under a key for as long as this session lives."""
+        self._tokens.append(self._session.liveliness().declare_token(key))
+
+    def alive(self, key: str) -> list[str]:
+        """The presence keys that match a key expression now."""
+        replies = self._session.liveliness().get(key)
+        return sorted({str(reply.ok.key_expr) for reply in replies if reply.ok is not None})
+
+
+def _keep_python_state() -> None:
+    """Let this foreign thread keep what Python knows of it.
+
+    Python would make that anew for every callback, which takes longer than the callback. One call
+    without its release keeps it (C API, "Non-Python created threads").
+    """
+    ctypes.pythonapi.PyGILState_Ensure()
+
+
+def _sample(sample: zenoh.Sample) -> Sample:
+    attachment = sample.attachment
+    return Sample(
+        str(sample.key_expr), bytes(sample.payload), bytes(attachment) if attachment is not None else b""
+    )
+
+
+def _config(settings: BusSettings) -> zenoh.Config:
+    """Scouting, gossip and shared memory off: explicit endpoints only, and nothing lost in /dev/shm."""
+    import zenoh
+
+    config = _config_of(settings.config) if settings.config else zenoh.Config()
+    patience_s = max(settings.lease_s, WAIT_FOR_ROOM_S)
+    values: dict[str, object] = {
+        "mode": "router" if settings.hub else "client",
+        "listen/endpoints": [settings.endpoint] if settings.hub else [],
+        "connect/endpoints": [] if settings.hub else [settings.endpoint],
+        "connect/timeout_ms": -1 if settings.wait_for_hub and not settings.hub else 0,
+        "connect/exit_on_failure": not settings.wait_for_hub,
+        "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2},
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "transport/shared_memory/enabled": False,
+        "timestamping/enabled": True,
+        "transport/link/tx/lease": round(settings.lease_s * 1000),
+        "transport/link/tx/queue/congestion_control/block/wait_before_close": round(patience_s * 1e6),
+    }
+    for key, value in values.items():
+        config.insert_json5(key, json.dumps(value))
+    return config
+
+
+def _config_of(file: Path) -> zenoh.Config:
+    import zenoh
+
+    try:
+        return zenoh.Config.from_file(str(file))
+    except zenoh.ZError as error:
+        raise UserError(f"{file}: no Zenoh configuration ({_reason(str(error))})") from error
+
+
+def _reason(error: str) -> str:
+    """The first words of a Zenoh error, without the place in Zenoh's own source."""
+    return " ".join(error.partition(" at /")[0].split())[:120]
+
+
+def _why_not_open(settings: BusSettings, error: str) -> str:
+    reason = _reason(error)
+    if settings.hub:
+        cure = "is another server running there, or is the address not this machine's?"
+        return f"cannot listen on {settings.endpoint}: {cure} ({reason})"
+    return f"cannot reach the server at {settings.endpoint}: is it running? ({reason})"

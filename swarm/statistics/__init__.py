@@ -1,0 +1,1 @@
+"""Statistics over replicates: intervals, paired tests, effect sizes, times to a threshold."""

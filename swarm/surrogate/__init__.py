@@ -1,0 +1,1 @@
+"""Robots without wheels: the robots' learning on measured durations and stored copies."""

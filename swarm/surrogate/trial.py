@@ -1,0 +1,128 @@
+"""One trial of an experiment with fast robots: who moves next, who visits whom, and what is copied."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from swarm.config.experiment import Experiment
+from swarm.geometry import Move
+from swarm.surrogate.copies import CopyStore
+from swarm.surrogate.durations import HEADING_AT_THE_START, Durations
+from swarm.surrogate.robots import FastLearner, FastRobot, Shown, fast_robot
+
+CARRIED_S = 2.5
+"""To the observer's place and back, in simulation: the tracker has to confirm that the robot stands there."""
+
+
+@dataclass(frozen=True)
+class CopiedPath:
+    """A path that entered a memory: whose, after how many moves, what was shown and what was copied."""
+
+    robot: str
+    move: int
+    true: tuple[Move, ...]
+    copied: tuple[Move, ...]
+
+
+@dataclass(frozen=True)
+class TrialOutcome:
+    """What one trial came to."""
+
+    trial: int
+    best_paths: dict[str, list[int]]
+    """Learner -> best path length after every ten moves."""
+    copies: tuple[CopiedPath, ...]
+
+
+class RobotTrial:
+    """Steps whichever robot is behind in time, so that all live in one time."""
+
+    def __init__(self, experiment: Experiment, durations: Durations, copies: CopyStore, trial: int) -> None:
+        self._experiment, self._copies, self._trial = experiment, copies, trial
+        self._robots = {each.id: fast_robot(experiment, each, durations, trial) for each in experiment.robot}
+        self._watched_until_s = dict.fromkeys(self._robots, 0.0)
+        self._due: dict[str, float] = {}
+        """Observers at their places: when each visit ends."""
+        self._copied: list[CopiedPath] = []
+
+    def run(self) -> TrialOutcome:
+        """Until every learner has made the experiment's moves."""
+        learners = [each for each in self._robots.values() if isinstance(each, FastLearner)]
+        while self._under_way(learners):
+            self._step(min(self._active(learners), key=lambda each: each.t_s))
+        best_paths = {each.settings.id: each.best_paths for each in learners}
+        return TrialOutcome(self._trial, best_paths, tuple(self._copied))
+
+    def _under_way(self, learners: list[FastLearner]) -> bool:
+        return any(each.moves < self._experiment.run.moves for each in learners)
+
+    def _active(self, learners: list[FastLearner]) -> list[FastRobot]:
+        """Who still has something to do: an expert as long as somebody may watch it."""
+        moves, capacity = self._experiment.run.moves, self._experiment.learning.capacity
+        wanted = {
+            each.settings.watches
+            for each in learners
+            if each.moves < moves and len(each.memory.remembered) < capacity
+        }
+        return [
+            each
+            for each in self._robots.values()
+            if each.settings.id in wanted or (isinstance(each, FastLearner) and each.moves < moves)
+        ]
+
+    def _step(self, robot: FastRobot) -> None:
+        if not isinstance(robot, FastLearner):
+            robot.move()
+        elif robot.settings.id in self._due:
+            self._end_visit(robot)
+        elif self._may_visit(robot):
+            self._begin_visit(robot)
+        else:
+            robot.move()
+
+    def _may_visit(self, robot: FastLearner) -> bool:
+        """The conductor's rule: at the start and every so many tracks, until the memory is full."""
+        watches = robot.settings.watches
+        if not watches or len(robot.memory.remembered) >= robot.rules.capacity:
+            return False
+        due = robot.tracks >= robot.visits * self._experiment.visits.every_tracks
+        is_taken = max(self._watched_until_s[watches], self._watched_until_s[robot.settings.id]) > robot.t_s
+        return due and not is_taken and watches not in self._due
+
+    def _begin_visit(self, robot: FastLearner) -> None:
+        robot.visits += 1
+        robot.abandon()
+        ends_s = robot.t_s + self._experiment.visits.duration_s + CARRIED_S
+        self._due[robot.settings.id] = self._watched_until_s[robot.settings.watches] = ends_s
+        robot.t_s = ends_s
+
+    def _end_visit(self, robot: FastLearner) -> None:
+        """The demonstrator has caught up with the end of the visit by now: see what it did."""
+        ends_s = self._due.pop(robot.settings.id)
+        began_s = ends_s - self._experiment.visits.duration_s - CARRIED_S / 2
+        seen = longest_drive(self._robots[robot.settings.watches].shown, began_s, ends_s - CARRIED_S / 2)
+        true = window(seen, self._experiment.visits.moves, robot.copy_rng)
+        copied = self._copies.drawn(true, robot.copy_rng) if true else ()
+        if copied:
+            robot.remember(copied)
+            self._copied.append(CopiedPath(robot.settings.id, robot.moves, true, copied))
+        robot.begin_at_start(HEADING_AT_THE_START)
+
+
+def longest_drive(shown: Iterable[Shown], began_s: float, ended_s: float) -> tuple[Move, ...]:
+    """The moves that were wholly seen between two times; of several journeys, those of the longest part."""
+    parts: dict[int, list[Move]] = {}
+    for move in shown:
+        if began_s <= move.began_s and move.ended_s <= ended_s:
+            parts.setdefault(move.track, []).append(move.move)
+    longest: list[Move] = max(parts.values(), key=lambda part: len(part), default=[])
+    return tuple(longest)
+
+
+def window(moves: tuple[Move, ...], count: int, rng: np.random.Generator) -> tuple[Move, ...]:
+    """`count` consecutive moves at a random place; all of a shorter list."""
+    first = int(rng.integers(max(len(moves) - count, 0) + 1))
+    return moves[first : first + count]

@@ -1,0 +1,145 @@
+"""Many trials of an experiment file with fast robots: curves, tables and the picture."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from swarm.analysis.learning_curves import interval
+from swarm.config.experiment import Experiment
+from swarm.errors import UserError
+from swarm.parallel import workers
+from swarm.statistics.samples import Curves, average_of_learners
+from swarm.surrogate.copies import CopyStore, load_copies
+from swarm.surrogate.durations import Durations, load_durations
+from swarm.surrogate.robots import MOVES_BETWEEN_EVALUATIONS
+from swarm.surrogate.trial import CopiedPath, RobotTrial, TrialOutcome
+
+PAPER_TRIALS = 4
+THRESHOLD = 12.0
+SHOWN_AT = (500, 1000, 1500, 2000, 3000, 4000, 6000, 8000, 10_000, 12_000, 15_000)
+
+
+@dataclass(frozen=True)
+class ManyTrials:
+    """What so many trials came to."""
+
+    experiment: Experiment
+    outcomes: tuple[TrialOutcome, ...]
+    curves: dict[str, Curves]
+    """Condition -> best path length against moves, a row a trial."""
+
+
+def run_trials(
+    experiment: Experiment,
+    copies: Path,
+    durations: Path,
+    trials: int,
+    jobs: int,
+    show: Callable[[], object] = lambda: None,
+) -> ManyTrials:
+    """Trials 0 to `trials` - 1, each with its own seed; the same whatever the number of jobs."""
+    if experiment.run.moves < MOVES_BETWEEN_EVALUATIONS:
+        raise UserError(
+            f"{experiment.run.moves} moves give no curve: the best path is noted every "
+            f"{MOVES_BETWEEN_EVALUATIONS} moves"
+        )
+    stored = load_copies(copies), load_durations(durations)
+    outcomes: list[TrialOutcome] = []
+    with workers("processes", jobs) as pool:
+        for outcome in pool.each(one_trial, ((experiment, *stored, trial) for trial in range(trials))):
+            outcomes.append(outcome)
+            show()
+    ordered = tuple(sorted(outcomes, key=lambda outcome: outcome.trial))
+    return ManyTrials(experiment, ordered, condition_curves(experiment, ordered))
+
+
+def one_trial(experiment: Experiment, copies: CopyStore, durations: Durations, trial: int) -> TrialOutcome:
+    return RobotTrial(experiment, durations, copies, trial).run()
+
+
+def condition_curves(experiment: Experiment, outcomes: Sequence[TrialOutcome]) -> dict[str, Curves]:
+    """Learners of one condition in one trial enter as their average: they may influence each other."""
+    points = experiment.run.moves // MOVES_BETWEEN_EVALUATIONS
+    times = MOVES_BETWEEN_EVALUATIONS * np.arange(1, points + 1, dtype=np.float64)
+    replicates = tuple((experiment.run.seed, outcome.trial) for outcome in outcomes)
+    curves = {}
+    for condition in dict.fromkeys(robot.group for robot in experiment.learners):
+        names = [robot.id for robot in experiment.learners if robot.group == condition]
+        rows = [
+            average_of_learners(np.array([outcome.best_paths[name][:points] for name in names]))
+            for outcome in outcomes
+        ]
+        curves[condition] = Curves(condition, times, np.array(rows), replicates)
+    return curves
+
+
+def summary(many: ManyTrials) -> dict[str, Any]:
+    """Mean and 95 % interval of each condition at some moves, and from where on its mean stays low."""
+    return {name: _condition_summary(curves) for name, curves in many.curves.items()} | {
+        "copies": _copies_summary([copied for outcome in many.outcomes for copied in outcome.copies])
+    }
+
+
+def _condition_summary(curves: Curves) -> dict[str, Any]:
+    mean, band = curves.values.mean(axis=0), interval(curves)
+    at = {}
+    for move in (move for move in SHOWN_AT if move in curves.times):
+        point = int(np.flatnonzero(curves.times == move)[0])
+        half = None if band is None else round(float(band.high[point] - mean[point]), 2)
+        at[str(move)] = [round(float(mean[point]), 2), half]
+    return {"trials": len(curves.values), "mean_and_half_interval": at, "stays_low_from": _stays_low(curves)}
+
+
+def _stays_low(curves: Curves) -> float | None:
+    """The first move from which the mean stays at or below 12; None if it does not in the end."""
+    above = np.flatnonzero(curves.values.mean(axis=0) > THRESHOLD)
+    if not len(above):
+        return float(curves.times[0])
+    return float(curves.times[above[-1] + 1]) if above[-1] + 1 < len(curves.times) else None
+
+
+def _copies_summary(copies: Sequence[CopiedPath]) -> dict[str, Any]:
+    wrong = sum(copied.true != copied.copied for copied in copies)
+    return {"remembered": len(copies), "wrong": round(wrong / len(copies), 4) if copies else None}
+
+
+def write_tables(many: ManyTrials, directory: Path) -> dict[str, str]:
+    """`curves.csv`: a row for each condition and point; `trials.csv`: a column for each trial."""
+    files = {"curves": directory / "curves.csv", "trials": directory / "trials.csv"}
+    with files["curves"].open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["condition", "move", "trials", "mean", "low", "high"])
+        for name, curves in many.curves.items():
+            writer.writerows(_curve_rows(name, curves))
+    with files["trials"].open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        trials = [outcome.trial for outcome in many.outcomes]
+        writer.writerow(["condition", "move", *(f"trial_{trial}" for trial in trials)])
+        for name, curves in many.curves.items():
+            columns = zip(curves.times, curves.values.T, strict=True)
+            writer.writerows([name, int(move), *map(float, values)] for move, values in columns)
+    return {name: str(path) for name, path in files.items()}
+
+
+def _curve_rows(name: str, curves: Curves) -> list[list[Any]]:
+    mean, band = curves.values.mean(axis=0), interval(curves)
+    return [
+        [
+            name,
+            int(move),
+            len(curves.values),
+            round(float(mean[point]), 4),
+            *(
+                ("", "")
+                if band is None
+                else (round(float(band.low[point]), 4), round(float(band.high[point]), 4))
+            ),
+        ]
+        for point, move in enumerate(curves.times)
+    ]

@@ -1,0 +1,156 @@
+"""The agent's loop with a simulated body, tracker and bridge, all in one process."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from robot_agent.agent import Activity
+from robot_agent.assembly import Assembly
+from swarm.clock import NS_PER_S
+from swarm.config.experiment import Experiment
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
+from tests.support.local_link import LocalLink
+from tests.support.swarm_runs import experiment_text, learners, write_experiment
+from tracker_bridge.backends.sim import SimulatedTracker
+from tracker_bridge.bridge import Bridge
+from tracker_bridge.plausibility import Gate, GateSettings
+
+TICK_NS = NS_PER_S // 10
+
+
+class Rig:
+    """One learner at work; the test is its conductor."""
+
+    def __init__(self, directory: Path, moves: int = 1000) -> None:
+        experiment = Experiment.load(write_experiment(directory, experiment_text(learners(1), moves)))
+        self.link = LocalLink()
+        self.agent = Assembly(experiment, self.link, 0).agent("r0")
+        self.compartment = experiment.compartment(experiment.robot[0])
+        truths = self.link.subscribe(topics.TRUTH)
+        tracker = SimulatedTracker(experiment.tracker, truths.take, lambda _: np.random.default_rng(1))
+        self._bridge = Bridge(tracker, Gate(GateSettings(13.0, 1.3)), self.link, ["r0"])
+
+    def run(
+        self,
+        seconds: float,
+        phase: pb.RunState.Phase.ValueType | None = pb.RunState.RUNNING,
+        *,
+        tracked: bool = True,
+    ) -> list[tuple[str, Any]]:
+        """Let time pass; what the robot published."""
+        before = len(self.link.published)
+        for _ in range(round(10 * seconds)):
+            self.link.t_ns += TICK_NS
+            if phase is not None:
+                self.link.publish(topics.RUN_STATE, pb.RunState(phase=phase))
+            self.agent.step(self.link.t_ns)
+            if tracked:
+                self._bridge.step(self.link.t_ns)
+        return [
+            (key, message) for key, message in self.link.published[before:] if key.startswith("robot/r0/")
+        ]
+
+    def order(self, kind: pb.Order.Kind.ValueType) -> None:
+        self.link.publish(topics.ORDER, pb.Order(kind=kind), "r0")
+
+
+def of(published: list[tuple[str, Any]], name: str) -> list[Any]:
+    return [message for key, message in published if key == f"robot/r0/{name}"]
+
+
+def stands(published: list[tuple[str, Any]]) -> bool:
+    """Whether the last commands stopped the wheels."""
+    return all(
+        command.left_steps_per_s == command.right_steps_per_s == 0.0
+        for command in of(published, "command")[-5:]
+    )
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Rig:
+    return Rig(tmp_path)
+
+
+def test_it_waits_for_the_run(rig: Rig) -> None:
+    published = rig.run(10, pb.RunState.PREPARING)
+    assert of(published, "move") == []
+    assert stands(published)
+
+
+def test_its_moves_follow_each_other_through_the_grid(rig: Rig) -> None:
+    moves = of(rig.run(120), "move")
+    assert len(moves) > 30
+    for sooner, later in pairwise(moves):
+        assert later.state == sooner.next_state
+        assert later.number == sooner.number + 1
+    for move in moves:
+        entered = rig.compartment.grid.neighbour(move.state, move.action)
+        assert move.blocked == (entered is None)
+        assert move.next_state == (move.state if entered is None else entered)
+
+
+def test_a_pause_lets_it_finish_its_move_and_a_run_lets_it_go_on(rig: Rig) -> None:
+    before = of(rig.run(30), "move")[-1].number
+    rig.order(pb.Order.PAUSE)
+    paused = rig.run(30)
+    assert len(of(paused, "move")) <= 1
+    assert stands(paused)
+    rig.order(pb.Order.RUN)
+    numbers = [move.number for move in of(rig.run(30), "move")]
+    assert numbers[0] - before <= 2
+    assert len(numbers) > 5
+
+
+def test_it_stands_when_the_conductor_falls_silent(rig: Rig) -> None:
+    rig.run(30)
+    rig.run(10, None)
+    silent = rig.run(30, None)
+    assert of(silent, "move") == []
+    assert stands(silent)
+
+
+def test_it_stands_without_poses_and_goes_on_with_them(rig: Rig) -> None:
+    rig.run(30)
+    rig.run(10, tracked=False)
+    blind = rig.run(20, tracked=False)
+    assert stands(blind)
+    assert of(blind, "status")[-1].pose_age_s > 20
+    assert len(of(rig.run(60), "move")) > 5
+
+
+def test_the_end_of_the_trial_stops_it(rig: Rig) -> None:
+    rig.run(31)
+    ended = rig.run(5, pb.RunState.ENDED)
+    assert stands(ended)
+    assert of(ended, "move") == []
+
+
+def test_it_finishes_after_its_moves(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, moves=7)
+    published = rig.run(60)
+    assert [move.number for move in of(published, "move")] == list(range(1, 8))
+    assert rig.agent.activity is Activity.FINISHED
+    assert stands(published)
+
+
+def test_a_robot_that_is_carried_away_learns_nothing_from_it(rig: Rig) -> None:
+    rig.run(30)
+    state = 55
+    x_m, y_m = rig.compartment.centre(state)
+    rig.link.publish(topics.CARRY, pb.Carry(x_m=x_m, y_m=y_m, theta_rad=1.0), "r0")
+    carried = rig.run(60)
+    assert [event.name for event in of(carried, "event")] == ["displaced"]
+    moves = of(carried, "move")
+    first_after = next(later for sooner, later in pairwise(moves) if later.state != sooner.next_state)
+    assert first_after.state == state
+    assert all(
+        move.next_state == move.state
+        or rig.compartment.grid.neighbour(move.state, move.action) == move.next_state
+        for move in moves
+    )

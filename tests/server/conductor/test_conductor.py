@@ -1,0 +1,93 @@
+"""The conductor of a trial: it announces, follows and ends it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from google.protobuf.message import Message
+
+from server.conductor.carrier import SimulatedHand
+from server.conductor.conductor import Conductor
+from server.hubs.hub import Batch
+from swarm.clock import NS_PER_S
+from swarm.config.experiment import Experiment
+from swarm.errors import RunFailedError
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
+from swarm.messages.header import Header, Item
+from swarm.messages.topics import Topic
+from tests.support.swarm_runs import experiment_text, write_experiment
+
+TICK_NS = NS_PER_S // 10
+
+
+class Rig:
+    """A conductor of three robots with 10 moves each, and what it says."""
+
+    def __init__(self, directory: Path) -> None:
+        self.said: list[tuple[str, Any]] = []
+        experiment = Experiment.load(write_experiment(directory, experiment_text(moves=10)))
+        self.conductor = Conductor(experiment, 3, self._publish, SimulatedHand(self._publish))
+        self.t_ns = 0
+        self._sequence = 0
+
+    def _publish(self, topic: Topic[Any], message: Message, robot: str) -> None:
+        self.said.append((topic.key(robot), message))
+
+    def step(self, *heard: tuple[str, bytes]) -> list[Any]:
+        """One tick with these messages; the run's states that it announces."""
+        self.t_ns += TICK_NS
+        before = len(self.said)
+        items = []
+        for key, payload in heard:
+            self._sequence += 1
+            items.append(Item(key, Header(1, self._sequence, self.t_ns), payload))
+        self.conductor.step(Batch(self.t_ns, items))
+        return [message for key, message in self.said[before:] if key == topics.RUN_STATE.key("")]
+
+
+def move(robot: str, number: int) -> tuple[str, bytes]:
+    return f"robot/{robot}/move", pb.Move(number=number, next_state=number).SerializeToString()
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Rig:
+    return Rig(tmp_path)
+
+
+def test_the_state_is_announced_once_a_second(rig: Rig) -> None:
+    announced = [rig.step() for _ in range(30)]
+    assert [bool(states) for states in announced] == ([True] + [False] * 9) * 3
+    state = announced[0][0]
+    assert (state.phase, state.trial, state.experiment) == (pb.RunState.RUNNING, 3, "small")
+
+
+def test_the_trial_ends_when_every_learner_has_made_its_moves(rig: Rig) -> None:
+    """An expert goes on for ever: its moves end nothing, and are not waited for."""
+    rig.step(move("expert", 500))
+    rig.step(move("imitator", 10))
+    assert not rig.conductor.ended
+    states = rig.step(move("loner", 10))
+    assert rig.conductor.ended
+    assert [state.phase for state in states] == [pb.RunState.ENDED]
+    assert rig.conductor.moves == {"expert": 500, "imitator": 10, "loner": 10}
+
+
+def test_best_paths_are_followed(rig: Rig) -> None:
+    rig.step(("robot/loner/best_path", pb.BestPath(move=10, length=42, cap=100).SerializeToString()))
+    assert rig.conductor.best_path == {"imitator": 0, "loner": 42}
+
+
+def test_bad_and_unknown_messages_do_no_harm(rig: Rig) -> None:
+    rig.step(("robot/loner/move", b"\xff\xffgarbage"), ("nobody/knows", b"x"), move("imitator", 1))
+    assert rig.conductor.bad_messages == 1
+    assert rig.conductor.moves["imitator"] == 1
+
+
+def test_a_trial_in_which_nobody_moves_is_given_up(rig: Rig) -> None:
+    rig.step(move("imitator", 10))
+    rig.conductor.check_progress(rig.t_ns + 600 * NS_PER_S)
+    with pytest.raises(RunFailedError, match=r"no robot has moved for 10 min of the run; waiting:.*loner"):
+        rig.conductor.check_progress(rig.t_ns + 601 * NS_PER_S)

@@ -1,0 +1,104 @@
+"""`swarm recover`: all that can be read of a damaged log, in a new one that is sound."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+import zstandard
+
+from swarm.cli.main import main
+from swarm.logs.check import check_log
+from swarm.logs.reader import LogError, LogReader
+from swarm.logs.recover import recover_log
+from tests.support.small_logs import SmallLog
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> Path:
+    """Forty messages in four chunks."""
+    small = SmallLog(tmp_path / "log.mcap", flush_every=10)
+    small.add_curve("loner", range(100, 60, -1))
+    return small.close()
+
+
+def numbers(path: Path) -> list[int]:
+    return [int(number) for part in LogReader(path).parts() for number in part.sequence]
+
+
+def test_a_sound_log_is_copied_whole(log: Path, tmp_path: Path) -> None:
+    recovery = recover_log(log, tmp_path / "new.mcap")
+    assert (recovery.messages, recovery.lost) == (40, [])
+    assert check_log(tmp_path / "new.mcap").sound
+    assert numbers(tmp_path / "new.mcap") == numbers(log) == list(range(1, 41))
+    assert LogReader(tmp_path / "new.mcap").read_metadata() == LogReader(log).read_metadata()
+
+
+def test_a_cut_log_is_recovered_up_to_the_cut(log: Path, tmp_path: Path) -> None:
+    data, torn = log.read_bytes(), tmp_path / "torn.mcap"
+    for size in range(len(data) // 2, len(data), 50):
+        torn.write_bytes(data[:size])
+        whole = tmp_path / f"{size}.mcap"
+        recovery = recover_log(torn, whole)
+        reader = LogReader(torn)
+        read = sum(len(part.sequence) for part in reader.parts())
+        assert recovery.messages == read > 0
+        found = check_log(whole)
+        assert (found.indexed, found.faults) == (True, [])
+
+
+def test_a_damaged_chunk_costs_its_own_messages(log: Path, tmp_path: Path) -> None:
+    data = bytearray(log.read_bytes())
+    data[data.index(zstandard.FRAME_HEADER) + 20] ^= 0xFF
+    (tmp_path / "broken.mcap").write_bytes(data)
+    recovery = recover_log(tmp_path / "broken.mcap", tmp_path / "new.mcap")
+    assert recovery.messages == 30
+    assert "checksum" in str(recovery.lost[0]) or "unpack" in str(recovery.lost[0])
+    assert numbers(tmp_path / "new.mcap") == list(range(11, 41))
+
+
+def test_a_damaged_definition_is_taken_from_the_index(log: Path, tmp_path: Path) -> None:
+    """Any byte of what stands before the first message: nothing is lost, or put under another key."""
+    data, whole = log.read_bytes(), numbers(log)
+    first_chunk = data.index(zstandard.FRAME_HEADER)
+    key = b"robot/loner/best_path"
+    places = range(data.index(key) - 30, min(first_chunk, data.index(key) + len(key)))
+    for place in places:
+        broken = bytearray(data)
+        broken[place] ^= 0x10
+        (tmp_path / "broken.mcap").write_bytes(broken)
+        recovered = tmp_path / f"{place}.mcap"
+        try:
+            recovery = recover_log(tmp_path / "broken.mcap", recovered)
+        except LogError:
+            continue
+        keys = {part.channel.key for part in LogReader(recovered).parts()}
+        assert keys == {key.decode()}
+        assert recovery.lost
+        assert numbers(recovered) == whole[: len(numbers(recovered))]
+    assert sum(1 for place in places if (tmp_path / f"{place}.mcap").exists()) > 20
+
+
+def test_the_command_says_what_it_did_and_overwrites_nothing(
+    log: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    torn = log.with_name("torn.mcap")
+    torn.write_bytes(log.read_bytes()[:-40])
+    (log.with_name("other.mcap")).write_bytes(b"something else")
+    codes, said = [], []
+    nowhere = ("--out", str(log.with_name("nowhere") / "new.mcap"))
+    for name, *options in (("torn",), ("torn",), ("other",), ("torn", *nowhere)):
+        words = ["swarm", "recover", str(log.with_name(f"{name}.mcap")), "--json", *options]
+        monkeypatch.setattr(sys, "argv", words)
+        with pytest.raises(SystemExit) as left:
+            main()
+        codes.append(left.value.code)
+        said.append(capsys.readouterr())
+    assert codes == [0, 2, 2, 2]
+    assert json.loads(said[0].out)["messages"] == 40
+    assert "torn.recovered.mcap: exists already; nothing is overwritten" in said[1].err
+    assert "is not an MCAP log" in said[2].err
+    assert "cannot be written (No such file or directory)" in said[3].err
+    assert not log.with_name("other.recovered.mcap").exists()

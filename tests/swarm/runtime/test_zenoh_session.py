@@ -1,0 +1,171 @@
+"""The bus over real sockets: a hub, its clients, and what may get lost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from queue import Empty, SimpleQueue
+
+import pytest
+
+from swarm.errors import UserError
+from swarm.messages.topics import Delivery
+from swarm.runtime.zenoh_session import Bus, BusSettings, Inbox, Sender
+from tests.support.endpoints import free_endpoint
+
+WAKE_S = 0.02
+
+
+@pytest.fixture
+def endpoint() -> str:
+    return free_endpoint()
+
+
+@pytest.fixture
+def hub(endpoint: str) -> Iterator[Bus]:
+    with Bus(BusSettings(endpoint, hub=True)) as bus:
+        yield bus
+
+
+@pytest.fixture
+def client(hub: Bus, endpoint: str) -> Iterator[Bus]:  # noqa: ARG001
+    with Bus(BusSettings(endpoint)) as bus:
+        yield bus
+
+
+class Arrivals:
+    """Lets a test wait until something came under a key, or for a moment if nothing does."""
+
+    def __init__(self, bus: Bus, key: str) -> None:
+        self._payloads: SimpleQueue[bytes] = SimpleQueue()
+        bus.on_arrival(key, self._payloads.put)
+
+    def wait(self) -> None:
+        with suppress(Empty):
+            self._payloads.get(timeout=WAKE_S)
+
+
+def introduced(sender: Sender, inbox: Inbox, wake: Arrivals) -> None:
+    """Put until the route stands: what is sent right after declaring may be lost."""
+    sender.put(b"hello")
+    while not inbox.poll():
+        wake.wait()
+        sender.put(b"hello")
+
+
+def drained(sender: Sender, inbox: Inbox, wake: Arrivals, last: bytes) -> list[bytes]:
+    """Everything up to a last payload, which is put here."""
+    sender.put(last)
+    found: list[bytes] = []
+    while last not in found:
+        wake.wait()
+        found += [sample.payload for sample in inbox.poll()]
+    return [payload for payload in found if payload != b"hello"]
+
+
+def test_every_payload_arrives_in_order_with_what_is_beside_it(hub: Bus, client: Bus) -> None:
+    inbox = hub.inbox("robot/*/move", Delivery.EVERY)
+    wake = Arrivals(hub, "robot/*/move")
+    sender = client.sender("robot/a/move", Delivery.EVERY)
+    introduced(sender, inbox, wake)
+    for number in range(1000):
+        sender.put(str(number).encode())
+    assert drained(sender, inbox, wake, b"last")[:-1] == [str(number).encode() for number in range(1000)]
+    sender.put(b"payload", attachment=b"header")
+    while not (samples := inbox.poll()):
+        wake.wait()
+    assert (samples[0].key, samples[0].payload, samples[0].attachment) == (
+        "robot/a/move",
+        b"payload",
+        b"header",
+    )
+
+
+def test_of_a_newest_delivery_one_is_kept(hub: Bus, client: Bus) -> None:
+    newest = hub.inbox("robot/a/pose", Delivery.NEWEST)
+    all_of_them = hub.inbox("robot/*/pose", Delivery.NEWEST, keep_all=True)
+    wake = Arrivals(hub, "robot/*/pose")
+    sender = client.sender("robot/a/pose", Delivery.NEWEST)
+    introduced(sender, all_of_them, wake)
+    for number in range(20):
+        sender.put(str(number).encode())
+    assert len(drained(sender, all_of_them, wake, b"last")) == 21
+    assert [sample.payload for sample in newest.poll()] == [b"last"]
+
+
+def test_clients_reach_each_other_through_the_hub(hub: Bus, client: Bus, endpoint: str) -> None:  # noqa: ARG001
+    with Bus(BusSettings(endpoint)) as other:
+        inbox = other.inbox("run/state", Delivery.EVERY)
+        wake = Arrivals(other, "run/state")
+        sender = client.sender("run/state", Delivery.EVERY)
+        introduced(sender, inbox, wake)
+        assert drained(sender, inbox, wake, b"last") == [b"last"]
+
+
+def test_arrivals_come_in_order_from_another_session_and_from_our_own(hub: Bus, client: Bus) -> None:
+    """Zenoh's thread calls for the client, the test's own thread for the hub's own sender."""
+    arrived: SimpleQueue[bytes] = SimpleQueue()
+    hub.on_arrival("robot/*/move", arrived.put)
+    hub.sender("robot/b/move", Delivery.EVERY).put(b"own")
+    assert arrived.get_nowait() == b"own"
+    sender = client.sender("robot/a/move", Delivery.EVERY)
+    while arrived.empty():
+        sender.put(b"hello")
+    payloads = [str(number).encode() for number in range(1000)]
+    for payload in payloads:
+        sender.put(payload)
+    received = iter(arrived.get, payloads[-1])
+    assert [payload for payload in received if payload != b"hello"] == payloads[:-1]
+
+
+def test_presence_comes_and_goes_with_the_session(hub: Bus, endpoint: str) -> None:
+    with Bus(BusSettings(endpoint)) as bus:
+        bus.declare_alive("alive/robot/a/here/1")
+        while not hub.alive("alive/robot/**"):
+            pass
+        assert hub.alive("alive/robot/**") == ["alive/robot/a/here/1"]
+    while hub.alive("alive/robot/**"):
+        pass
+
+
+def test_a_busy_port_is_one_clear_line(hub: Bus, endpoint: str) -> None:  # noqa: ARG001
+    with pytest.raises(UserError) as error, Bus(BusSettings(endpoint, hub=True)):
+        pass
+    assert str(error.value).startswith(f"cannot listen on {endpoint}: is another server running there")
+    assert "\n" not in str(error.value)
+
+
+def test_no_server_is_one_clear_line(endpoint: str) -> None:
+    with pytest.raises(UserError, match=r"is it running\?"), Bus(BusSettings(endpoint, wait_for_hub=False)):
+        pass
+
+
+@pytest.mark.parametrize("content", [None, "{ this is no JSON5"])
+def test_a_bad_zenoh_file_is_named(tmp_path: Path, endpoint: str, content: str | None) -> None:
+    file = tmp_path / "zenoh.json5"
+    if content is not None:
+        file.write_text(content)
+    with (
+        pytest.raises(UserError, match=r"zenoh\.json5: no Zenoh configuration"),
+        Bus(BusSettings(endpoint, hub=True, config=file)),
+    ):
+        pass
+
+
+def test_a_zenoh_file_may_limit_what_clients_do(tmp_path: Path, endpoint: str) -> None:
+    """Access control from a file: a client's puts under one key do not arrive, under another they do."""
+    file = tmp_path / "zenoh.json5"
+    file.write_text(
+        """{access_control: {enabled: true, default_permission: "allow",
+            rules: [{id: "no", messages: ["put"], flows: ["ingress"], permission: "deny",
+                     key_exprs: ["robot/b/**"]}],
+            subjects: [{id: "all"}], policies: [{rules: ["no"], subjects: ["all"]}]}}"""
+    )
+    with Bus(BusSettings(endpoint, hub=True, config=file)) as hub, Bus(BusSettings(endpoint)) as client:
+        inbox = hub.inbox("robot/**", Delivery.EVERY)
+        wake = Arrivals(hub, "robot/**")
+        allowed = client.sender("robot/a/move", Delivery.EVERY)
+        introduced(allowed, inbox, wake)
+        client.sender("robot/b/move", Delivery.EVERY).put(b"forged")
+        assert drained(allowed, inbox, wake, b"last") == [b"last"]

@@ -1,0 +1,159 @@
+"""Runs over plain publishing and subscribing: no lockstep, clocks instead."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robot_agent.checkpoint import Checkpoint
+from server.hubs.live import LiveHub
+from swarm.clock import scaled_clock
+from swarm.config.experiment import Experiment
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
+from swarm.messages.header import Header, Item
+from swarm.messages.topics import Delivery, Topic, topic_of
+from swarm.runtime.liveliness import Presence, claim
+from swarm.runtime.zenoh_session import Bus, BusSettings
+from tests.support.endpoints import free_endpoint
+from tests.support.swarm_runs import ROOT, experiment_text, learners, messages, run_server, write_experiment
+
+SPEED = 20.0
+STATE_EVERY_BATCHES = 5
+
+
+def test_a_scaled_run_ends_with_every_move_in_the_log(tmp_path: Path) -> None:
+    experiment = write_experiment(tmp_path, experiment_text(learners(2), moves=5))
+    run = tmp_path / "run"
+    result = run_server(experiment, run, "--speed", str(SPEED))
+    log = run / "trial-000.mcap"
+    for robot in ("r0", "r1"):
+        numbers = [move.number for name, move in messages(log, "move") if name == robot]
+        assert numbers[:5] == [1, 2, 3, 4, 5]
+    assert result["moves"] >= 10
+    assert {state.phase for _, state in messages(log, "state")} >= {pb.RunState.RUNNING, pb.RunState.ENDED}
+
+
+class LiveSwarm:
+    """A hub in this process; the tracker bridge and the agent are processes of their own."""
+
+    def __init__(self, directory: Path, stack: ExitStack) -> None:
+        self.file = write_experiment(directory, experiment_text(learners(1), moves=1000))
+        self.directory = directory
+        self.endpoint = free_endpoint()
+        self._stack = stack
+        self._started_ns = time.monotonic_ns()
+        self.bus = stack.enter_context(Bus(BusSettings(self.endpoint, hub=True)))
+        claim(self.bus, Presence("server", "server", "here", 1))
+        clock = scaled_clock(self._started_ns, SPEED)
+        self.processes: list[subprocess.Popen[bytes]] = []
+        self.hub = LiveHub(self.bus, clock, Experiment.load(self.file), self.check, print)
+        self._batches = 0
+
+    def start(self, module: str, *arguments: str) -> subprocess.Popen[bytes]:
+        """A process of the swarm, ended with the test."""
+        pace = ("--started-ns", str(self._started_ns), "--speed", str(SPEED))
+        command = [
+            sys.executable,
+            "-m",
+            module,
+            str(self.file),
+            "--connect",
+            self.endpoint,
+            *pace,
+            *arguments,
+        ]
+        process = self._stack.enter_context(subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE))
+        self._stack.callback(process.kill)
+        self.processes.append(process)
+        return process
+
+    def start_agent(self) -> subprocess.Popen[bytes]:
+        return self.start("robot_agent", "--robot", "r0", "--state", str(self.directory / "state"))
+
+    def check(self) -> None:
+        """Nobody may die by itself."""
+        for process in self.processes:
+            assert process.poll() in (None, -signal.SIGKILL), process.args
+
+    def items(self) -> Iterator[Item]:
+        """What comes, for ever, while the run's state is announced."""
+        while True:
+            if self._batches % STATE_EVERY_BATCHES == 0:
+                self.hub.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.RUNNING))
+            self._batches += 1
+            yield from self.hub.gather().items
+
+    def received(self, topic: Topic[Any]) -> Iterator[tuple[Item, Any]]:
+        """Decoded messages of one topic as they come."""
+        for item in self.items():
+            found = topic_of(item.key)
+            if found and found[0] is topic:
+                yield item, topic.message.FromString(item.payload)
+
+
+@pytest.fixture
+def swarm(tmp_path: Path) -> Iterator[LiveSwarm]:
+    with ExitStack() as stack:
+        yield LiveSwarm(tmp_path, stack)
+
+
+def test_a_killed_agent_goes_on_from_its_checkpoint(swarm: LiveSwarm) -> None:
+    swarm.start("tracker_bridge")
+    agent = swarm.start_agent()
+    first_epochs = set()
+    for item, move in swarm.received(topics.MOVE):
+        first_epochs.add(item.header.epoch)
+        if move.number == 5:  # a move is told and then saved: the fifth shows that the fourth is
+            break
+    agent.kill()
+    agent.wait()
+    path = swarm.directory / "state" / "r0.json"
+    saved = Checkpoint(path.parent, "r0", _run_in(path)).load()
+    assert saved is not None
+    moves_saved = saved["brain"]["moves"]
+    assert moves_saved >= 4
+    swarm.start_agent()
+    item, move = next(
+        found for found in swarm.received(topics.MOVE) if found[0].header.epoch not in first_epochs
+    )
+    assert move.number == moves_saved + 1, "it counts on"
+    before = saved["brain"]["q"][move.state][move.action]
+    assert move.q_value - move.q_change == pytest.approx(before, abs=1e-12), "it learns on"
+    assert item.header.sequence == 1, "a restart shows in the log as a new epoch that counts from 1"
+
+
+def _run_in(path: Path) -> str:
+    return str(json.loads(path.read_text())["run"])
+
+
+def test_corrupt_messages_are_counted_and_nothing_dies(swarm: LiveSwarm) -> None:
+    swarm.start("tracker_bridge")
+    swarm.start_agent()
+    with Bus(BusSettings(swarm.endpoint)) as stranger:
+        pose = stranger.sender(topics.POSE.key("r0"), Delivery.NEWEST)
+        epoch = time.time_ns()
+        for number, (_, status) in enumerate(swarm.received(topics.STATUS), 1):
+            if status.bad_messages:
+                break
+            pose.put(b"no header")
+            pose.put(b"\xff\xffgarbage", attachment=Header(epoch, 3 * number, 0).pack())
+            pose.put(
+                pb.Pose(x_m=float("nan")).SerializeToString(),
+                attachment=Header(epoch, 3 * number + 1, 0).pack(),
+            )
+            pose.put(bytes(100_000), attachment=Header(epoch, 3 * number + 2, 0).pack())
+    moves = swarm.received(topics.MOVE)
+    numbers = [next(moves)[1].number for _ in range(5)]
+    assert numbers == list(range(numbers[0], numbers[0] + 5)), "poses are still believed, and moves made"
+    assert swarm.hub.without_header >= 1
+    swarm.check()
