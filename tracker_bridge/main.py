@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from importlib import import_module
 
 from swarm.errors import guarded
 from swarm.runtime.process import (
@@ -15,12 +16,24 @@ from swarm.runtime.process import (
 )
 from tracker_bridge.backends.registry import backend_named
 from tracker_bridge.bridge import Bridge
+from tracker_bridge.commands import VERBS
 from tracker_bridge.plausibility import Gate, GateSettings
 
 
 def main() -> None:
     """Entry point of `tracker-bridge`."""
-    sys.exit(guarded(lambda: run(_parser().parse_args())))
+    sys.exit(guarded(lambda: call(sys.argv[1:])))
+
+
+def call(words: list[str]) -> None:
+    """Do what a verb says, or, without one, pass poses on."""
+    if not words or words[0] not in VERBS:
+        run(_parser().parse_args(words))
+        return
+    verb = import_module(f"tracker_bridge.commands.{words[0]}")
+    parser = OneLineParser(prog=f"tracker-bridge {words[0]}", description=VERBS[words[0]])
+    verb.add_arguments(parser)
+    verb.run(parser.parse_args(words[1:]))
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -14,8 +14,10 @@ LEAST_SPACING_M = 0.013
 """Markers of 8 mm that stand closer run together in a tracker's cameras."""
 
 
-def design_hats(grid: PinGrid, count: int, pins: int = 4, spacing_m: float = LEAST_SPACING_M) -> list[Hat]:
-    """`count` hats whose least difference is as large as was found.
+def design_hats(
+    grid: PinGrid, count: int, pins: int = 4, spacing_m: float = LEAST_SPACING_M, prefix: str = ""
+) -> list[Hat]:
+    """`count` hats, named by the prefix and a number from 1, whose least difference is as large as was found.
 
     Raises UserError if the grid does not have so many patterns.
     """
@@ -27,7 +29,9 @@ def design_hats(grid: PinGrid, count: int, pins: int = 4, spacing_m: float = LEA
     chosen = _most_different(between_m, symmetric_m, count)
     if len(chosen) < count:
         raise UserError(f"the grid has {len(chosen)} patterns that differ at all; {count} were asked for")
-    return [Hat(str(number), tuple(patterns[kind])) for number, kind in enumerate(chosen[:count], start=1)]
+    return [
+        Hat(f"{prefix}{number}", tuple(patterns[kind])) for number, kind in enumerate(chosen[:count], start=1)
+    ]
 
 
 def _most_different(between_m: Floats, symmetric_m: Floats, count: int) -> list[int]:

@@ -9,8 +9,10 @@ import numpy as np
 from swarm.clock import NS_PER_S
 from tracker_bridge.hats.alignment import Points
 
-SAME_PLACE_M = 0.004
+SAME_PLACE_M = 0.005
 """A reflection stands; its noise is that of a marker."""
+AVERAGED = 0.1
+"""Of a stray's place, of each new sighting: its own noise is then a quarter of a marker's."""
 STAYS_NS = NS_PER_S
 """Older ones are named."""
 FORGOTTEN_NS = NS_PER_S // 5
@@ -46,6 +48,7 @@ class StrayWatch:
         places = np.array([stray.place for stray in self._strays])
         apart_m = np.abs(places - point)
         if len(places) and apart_m.min() < SAME_PLACE_M:
-            self._strays[int(apart_m.argmin())].seen_ns = t_ns
+            stray = self._strays[int(apart_m.argmin())]
+            stray.place, stray.seen_ns = stray.place + AVERAGED * (point - stray.place), t_ns
         else:
             self._strays.append(_Stray(point, t_ns, t_ns))

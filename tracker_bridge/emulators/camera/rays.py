@@ -13,19 +13,35 @@ Floats = npt.NDArray[np.float32]
 def on_plate(
     origin: Floats, rays: Floats, centre: Floats, theta_rad: Floats, tilt_rad: tuple[float, float]
 ) -> tuple[Floats, Floats]:
-    """Where rays meet the plane of a plate: metres ahead of and to the left of its centre.
+    """Where rays meet a plate: metres ahead of and to the left of its centre, along the plate.
 
     `rays` is (..., 3) from `origin`; `centre` is (..., 3) and `theta_rad` (...), both at each ray's own time.
+    The plate's front sinks by the first tilt, then its left side by the second.
     """
-    ahead, left = math.tan(tilt_rad[0]), math.tan(tilt_rad[1])
     cos, sin = np.cos(theta_rad), np.sin(theta_rad)
-    east, north = centre[..., 0] - origin[0], centre[..., 1] - origin[1]
-    # the plate sinks by `ahead` for each metre ahead and by `left` for each metre to the left
-    slope_x, slope_y = ahead * cos - left * sin, ahead * sin + left * cos
-    above = centre[..., 2] - origin[2] + slope_x * east + slope_y * north
-    reach = above / (rays[..., 2] + slope_x * rays[..., 0] + slope_y * rays[..., 1])
-    x, y = reach * rays[..., 0] - east, reach * rays[..., 1] - north
-    return cos * x + sin * y, cos * y - sin * x
+    ahead, left, up = _plate_axes(*tilt_rad)
+    from_centre = _in_heading(origin - centre, cos, sin)
+    along = _in_heading(rays, cos, sin)
+    reach = -_dot(from_centre, up) / _dot(along, up)
+    met = [start + reach * step for start, step in zip(from_centre, along, strict=True)]
+    return _dot(met, ahead), _dot(met, left)
+
+
+def _plate_axes(pitch_rad: float, roll_rad: float) -> list[list[float]]:
+    """A plate's own ahead, left and up before it turns to its heading."""
+    cp, sp, cr, sr = math.cos(pitch_rad), math.sin(pitch_rad), math.cos(roll_rad), math.sin(roll_rad)
+    return [[cp, 0.0, -sp], [-sp * sr, cr, -cp * sr], [sp * cr, sr, cp * cr]]
+
+
+def _in_heading(vectors: Floats, cos: Floats, sin: Floats) -> list[Floats]:
+    """The three parts of vectors (..., 3): ahead of and to the left of a heading, and up."""
+    x, y = vectors[..., 0], vectors[..., 1]
+    return [cos * x + sin * y, cos * y - sin * x, vectors[..., 2]]
+
+
+def _dot(parts: list[Floats], axis: list[float]) -> Floats:
+    first, second, third = (np.float32(weight) for weight in axis)
+    return np.asarray(parts[0] * first + parts[1] * second + parts[2] * third)
 
 
 def through_body(origin: Floats, rays: Floats, centre: Floats, radius_m: float) -> npt.NDArray[np.bool_]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import copy
 from dataclasses import dataclass
 
 import cv2
@@ -48,13 +49,19 @@ class CameraRenderer:
         rng: np.random.Generator,
     ) -> None:
         self.optics, self.station, self.plate, self.faults = optics, station, plate, faults
-        self._codes = {tag: np.where(code, PAPER_GREY, INK_GREY) for tag, code in codes.items()}
+        self._codes = _printed(codes)
         self._floor = floor.astype(np.float32)
         self._rng = rng
         self._origin = station.place.astype(np.float32)
         self._rays = _rays(optics, station)
         self._light = _light(optics, faults)
         self._moments = _moments(rng)
+
+    def with_plates(self, plate: TagPlate, codes: dict[int, Grey]) -> CameraRenderer:
+        """The same camera over the same floor with other plates: boards, or tags on the floor."""
+        other = copy(self)
+        other.plate, other._codes = plate, _printed(codes)
+        return other
 
     def render(self, swarm: Swarm) -> Grey:
         """(height, width): one exposure, with the robots at `swarm.poses` in the middle of it."""
@@ -136,6 +143,10 @@ class CameraRenderer:
             return grey
         coded = cv2.imencode(".jpg", grey, [cv2.IMWRITE_JPEG_QUALITY, faults.jpeg_quality])[1]
         return np.asarray(cv2.imdecode(coded, cv2.IMREAD_GRAYSCALE), dtype=np.uint8)
+
+
+def _printed(codes: dict[int, Grey]) -> dict[int, Floats]:
+    return {tag: np.where(code, PAPER_GREY, INK_GREY).astype(np.float32) for tag, code in codes.items()}
 
 
 def _rays(optics: Optics, station: Station) -> Floats:
