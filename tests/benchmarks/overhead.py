@@ -1,8 +1,8 @@
 """How exactly and how fast robots with tags are found; run with `python -m tests.benchmarks.overhead`.
 
 Prints a JSON line for each condition. The frames are rendered by `tracker_bridge.emulators.camera`, ray by
-ray, without any of the tracker's code; lens and place come from rendered pictures of a board and of tags on the
-floor. Times are processor time on one core, of OpenCV's own detector over the same full frames too.
+ray, without any of the tracker's code; lens and place come from rendered pictures of a board and of tags on
+the floor. Times are processor time on one core, of OpenCV's own detector over the same full frames too.
 """
 
 from __future__ import annotations

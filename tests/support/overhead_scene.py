@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -44,8 +44,8 @@ FLOOR_SIDE_M = 0.1
 class Conditions:
     """What is varied: the first are the issue's, the rest go beyond."""
 
-    faults: Faults = Faults()
-    plate: TagPlate = TagPlate()
+    faults: Faults = field(default_factory=Faults)
+    plate: TagPlate = field(default_factory=TagPlate)
     robots: int = 20
     is_littered: bool = True
     tilt_sd_rad: float = math.radians(0.5)

@@ -1,4 +1,4 @@
-"""`tracker-bridge calibrate camera lens|place`: a camera's lens from a board, its place from tags on the floor."""
+"""`tracker-bridge calibrate camera lens|place`: the lens from a board, the place from tags on the floor."""
 
 from __future__ import annotations
 

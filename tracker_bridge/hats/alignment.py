@@ -25,7 +25,7 @@ def align(shapes: Points, points: Points, weights: Floats | None = None) -> tupl
     turn = (beside * (shapes - shape_mean[..., None]).conj()).sum(-1)
     turn = np.where(np.abs(turn) > 0, turn, 1.0)
     turn = turn / np.abs(turn)
-    return point_mean - turn * shape_mean, turn
+    return np.asarray(point_mean - turn * shape_mean), np.asarray(turn)
 
 
 def residuals(shapes: Points, points: Points) -> Floats:

@@ -16,16 +16,16 @@ Numbers = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 
 GATE_M = 0.005
-"""A marker is its pin's if it lies so near to where the pin is expected: five times the noise of a poor tracker."""
+"""A marker is its pin's if it lies so near to where that is expected: five times a poor tracker's noise."""
 DRIFT_M_PER_S = 0.06
 """The gate's growth while a body is not seen: half an e-puck's speed, for it may brake or turn."""
 PLACE_GAIN, SPEED_GAIN = 0.6, 0.15
 """Of the alpha-beta filter that predicts; robots change speed within several clouds, noise within one."""
 LIMITS = {2: 15.1, 3: 21.1, 4: 25.7}
-"""Largest sums of squares in units of the noise's variance by pins seen: chi-squared with 2 k - 3 degrees of
-freedom is above them once in 10,000."""
+"""Largest sums of squares in units of the noise's variance by pins seen: chi-squared with 2 k - 3 degrees
+of freedom is above them once in 10,000."""
 UNSEEN_WEIGHT = 0.5
-"""Of a pin that is not seen, at its expected place: two pins 13 mm apart alone leave 6 degrees of heading open."""
+"""Of a pin that is not seen, at its expected place: two pins 13 mm apart alone leave 6 degrees open."""
 MOST_PINS = 4
 
 
@@ -101,8 +101,8 @@ class Sightings:
 def sight(bodies: list[Body], points: Points, t_ns: int, noise_m: float) -> Sightings:
     """Look for bodies in a cloud (n,) where they are expected.
 
-    A marker goes to the nearest pin, and a pin takes the nearest marker: both must agree. A body is believed if
-    two or more of its pins are seen and lie as they should.
+    A marker goes to the nearest pin, and a pin takes the nearest marker: both must agree. A body is believed
+    if two or more of its pins are seen and lie as they should.
     """
     pins = np.array([body.pins for body in bodies])
     expected = np.array([body.predicted(t_ns) for body in bodies])
@@ -122,7 +122,7 @@ def sight(bodies: list[Body], points: Points, t_ns: int, noise_m: float) -> Sigh
 
 
 def _mutual(pins: Points, points: Points, gates_m: Floats) -> Numbers:
-    """(pins,): the point of each pin, -1 if none is within its gate or that point is nearer to another pin."""
+    """(pins,): each pin's point, -1 if none is within its gate or that one is nearer to another pin."""
     if not len(points) or not len(pins):
         return np.full(len(pins), -1)
     apart_m = np.abs(pins[:, None] - points)

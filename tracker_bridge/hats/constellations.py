@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
@@ -49,7 +47,7 @@ class DistanceIndex:
         return _disjoint(members, misses_m, self._tolerance_m)
 
     def _candidates(self, points: Points) -> tuple[Numbers, Numbers]:
-        """Ordered pairs of points (m, 2) and, for each, a pattern (m,) whose reach is about their distance."""
+        """Ordered pairs of points (m, 2) and, for each, a pattern (m,) that reaches about as far."""
         apart_m = np.abs(points[:, None] - points)
         near = (apart_m >= self._reach_m[0] - self._tolerance_m) & (
             apart_m <= self._reach_m[-1] + self._tolerance_m

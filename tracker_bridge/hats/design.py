@@ -50,7 +50,7 @@ def _most_different(between_m: Floats, symmetric_m: Floats, count: int) -> list[
 
 
 def _distinguishable(between_m: Floats, symmetric_m: Floats, tolerance_m: float) -> list[int]:
-    """Patterns that differ pairwise by a tolerance: always the one that excludes the fewest others is taken."""
+    """Patterns that differ pairwise by a tolerance: always the one next that excludes the fewest others."""
     left = symmetric_m >= tolerance_m - 1e-9
     alike = between_m < tolerance_m - 1e-9
     chosen = []

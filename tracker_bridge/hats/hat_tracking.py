@@ -121,8 +121,8 @@ class HatTracker:
         body.pin_seen_ns = [t_ns] * MOST_PINS
 
     def _tracked(self, sightings: Sightings, free: Points) -> list[TrackedHat]:
-        """Believed sightings of named bodies. One that lacks a pin beside a point that nothing explains may be
-        another hat, and is left out."""
+        """Believed sightings of named bodies. One that lacks a pin beside a point that nothing explains may
+        be another hat, and is left out."""
         tracked = []
         for number in np.flatnonzero(sightings.believed):
             body, seen = self._bodies[number], int(sightings.seen[number])

@@ -30,7 +30,7 @@ class PinGrid:
 
     @property
     def holes(self) -> list[complex]:
-        """Metres ahead (real) and to the left (imaginary) of the robot's axis, row by row from the front left."""
+        """Metres ahead (real) and to the left (imaginary) of the robot's axis, from the front left on."""
         places = [
             complex((self.rows - 1) / 2 - row, (self.columns - 1) / 2 - column) * self.pitch_m
             for row in range(self.rows)
@@ -60,7 +60,7 @@ def difference_m(pins: Points, others: Points) -> Floats:
 
 
 def self_difference_m(pins: Points) -> Floats:
-    """(n,): how different each pattern is from itself with its pins paired otherwise: 0 if it is symmetric."""
+    """(n,): how different each pattern is from itself with pins paired otherwise: 0 if it is symmetric."""
     others = orders(pins.shape[1])[1:]
     return np.asarray(residuals(pins[:, None, :], pins[:, others]).max(-1).min(-1))
 

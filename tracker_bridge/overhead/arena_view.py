@@ -100,15 +100,15 @@ def view_from_known_points(lens: Lens, places_m: Floats, pixels: Floats) -> Aren
     if missed_px.max() > LARGEST_RESIDUAL_PX:
         worst = places_m[missed_px.argmax()]
         raise UserError(
-            f"the known point at ({worst[0]:g}, {worst[1]:g}) m is seen {missed_px.max():.1f} px beside where "
-            "the others put it: is its position, its heading or the lens wrong?"
+            f"the known point at ({worst[0]:g}, {worst[1]:g}) m is seen {missed_px.max():.1f} px beside where"
+            " the others put it: is its position, its heading or the lens wrong?"
         )
     return ArenaView(lens, view.rotation, view.shift_m, float(np.sqrt((missed_px**2).mean())))
 
 
 def undistorted_lens(places_m: Floats, pixels: Floats, size: tuple[int, int], height_m: float) -> Lens:
-    """A lens without distortion, its axis through the middle of a picture of a size (width, height), that puts
-    the camera at a measured height over known places (n, 3).
+    """A lens without distortion, its axis through the middle of a picture of a size (width, height), that
+    puts the camera at a measured height over known places (n, 3).
 
     Of a camera that looks straight down nothing else tells the focal length: the height that is found grows
     in proportion to it.

@@ -12,7 +12,7 @@ Grey = npt.NDArray[np.uint8]
 
 BLUR = 0.25
 """Part of a module's grey that comes from its four neighbours, where a module has 2 to 3 pixels.
-Agreement of true tags was flat from 0.2 to 0.3 on rendered frames; that of wrong ones rises slowly with it."""
+Agreement of true tags was flat from 0.2 to 0.3 on rendered frames; that of wrong ones rises slowly."""
 
 
 class CodeBook:
@@ -45,8 +45,8 @@ class CodeBook:
         return self._agreement(self._grey(picture, quads), np.array(numbers))
 
     def _agreement(self, grey: Floats, numbers: npt.NDArray[np.int64]) -> Floats:
-        """The correlation of what is seen with a code, 1 for a perfect print: of the inner modules alone, which
-        tell tags apart, or of all with the border, which tells tags from other things, if that is less."""
+        """The correlation of what is seen with a code, 1 for a perfect print: of the inner modules alone,
+        which tell tags apart, or of all with the border, which tells tags from other things, if less."""
         whole = (_unit(grey) * self._expected[numbers]).sum(1)
         inner = (_unit(grey[:, self._inner]) * self._expected_inner[numbers]).sum(1)
         return np.asarray(np.minimum(whole, inner))

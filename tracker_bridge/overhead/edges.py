@@ -21,6 +21,11 @@ ACROSS = np.linspace(-1.0, 1.0, 15)
 FINE_MODULES, FINE_LEAST_PX, FINE_MOST_PX = 0.6, 1.0, 1.5
 """Reach of the centroid: within the border's own module, and wide enough for the blur of a lens."""
 
+NO_SECOND_MAP = np.empty(0, dtype=np.float32)
+"""OpenCV takes places as one map of pairs or as two of x and y."""
+FINE_ROUNDS = 3
+"""Samples then lie evenly about the edges; on rendered frames a fourth round changed nothing."""
+
 
 def aligned_quads(picture: Grey, quads: Floats, reach_px: float, modules: int) -> Floats:
     """(n, 4, 2): quadrilaterals moved onto the edges of tags that are within `reach_px` of them.
@@ -30,7 +35,7 @@ def aligned_quads(picture: Grey, quads: Floats, reach_px: float, modules: int) -
     module_px = _depth_px(quads) / modules
     fine_px = np.clip(FINE_MODULES * module_px, FINE_LEAST_PX, FINE_MOST_PX)
     quads = _meeting(*_moved_sides(picture, quads, np.full(module_px.shape, reach_px)))
-    for _ in range(2):  # the second time the samples lie evenly about the edge
+    for _ in range(FINE_ROUNDS):
         quads = _meeting(*_fitted_sides(picture, quads, fine_px))
     return quads
 
@@ -81,7 +86,7 @@ def _rises(picture: Grey, quads: Floats, reach_px: Floats) -> tuple[Floats, Floa
 def sampled(picture: Grey, points: Floats) -> Floats:
     """Grey values at (n, ..., 2) pixels, between pixels linearly; beyond the picture its edge goes on."""
     sheet = points.reshape(len(points), -1, 2).astype(np.float32)
-    grey = cv2.remap(picture, sheet, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    grey = cv2.remap(picture, sheet, NO_SECOND_MAP, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     return np.asarray(grey, dtype=np.float64).reshape(points.shape[:-1])
 
 

@@ -19,7 +19,7 @@ Floats = npt.NDArray[np.float64]
 CORNER_ERROR_PX = 0.3
 """Of a corner, where a module has three pixels or more: deviation from the corners given for photographs."""
 DOUBTFUL = 3.0
-"""A second solution whose error is less than so many times the first's, or than the corners' own, may be true."""
+"""A second solution whose error is not so many times the first's, the corners' own added, may be true."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,11 @@ def tag_poses(corners: Floats, lens: Lens, side_m: float) -> TagPoses:
         square, corners, lens.matrix, lens.coefficients, flags=cv2.SOLVEPNP_IPPE_SQUARE
     )
     poses = [
-        TagPose(np.asarray(cv2.Rodrigues(turn)[0]), np.asarray(shift).ravel(), float(error))
+        TagPose(
+            np.asarray(cv2.Rodrigues(turn)[0], dtype=np.float64),
+            np.asarray(shift, dtype=np.float64).ravel(),
+            float(error),
+        )
         for turn, shift, error in zip(turns, shifts, np.ravel(errors), strict=True)
     ]
     return TagPoses(poses[0], poses[-1])

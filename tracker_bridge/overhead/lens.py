@@ -23,7 +23,7 @@ NO_DISTORTION = (0.0, 0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Lens:
-    """A pinhole with OpenCV's five coefficients of distortion (k1, k2, p1, p2, k3), for one size of pictures."""
+    """A pinhole with OpenCV's five coefficients of distortion (k1, k2, p1, p2, k3), for one picture size."""
 
     width: int
     height: int
@@ -66,7 +66,7 @@ class Board:
     family: int = cv2.aruco.DICT_4X4_50
 
     def corners(self, picture: Grey) -> tuple[Floats, Floats] | None:
-        """Places on the board (n, 3) and in the picture (n, 2) of its inner corners; None if it is not seen."""
+        """Places on the board (n, 3) and in the picture (n, 2) of its inner corners; None if unseen."""
         return self._charuco_corners(picture) if self.marker_m else self._chessboard_corners(picture)
 
     def _chessboard_corners(self, picture: Grey) -> tuple[Floats, Floats] | None:
@@ -76,7 +76,7 @@ class Board:
             return None
         column, row = np.meshgrid(np.arange(inner[0]), np.arange(inner[1]))
         places = np.column_stack([column.ravel(), row.ravel(), np.zeros(column.size)]) * self.square_m
-        return places, np.asarray(pixels, dtype=np.float64).reshape(-1, 2)
+        return places.astype(np.float64), np.asarray(pixels, dtype=np.float64).reshape(-1, 2)
 
     def _charuco_corners(self, picture: Grey) -> tuple[Floats, Floats] | None:
         dictionary = cv2.aruco.getPredefinedDictionary(self.family)

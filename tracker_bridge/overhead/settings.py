@@ -105,7 +105,7 @@ class Calibration:
     def arena_view(self) -> ArenaView | None:
         if self.view is None:
             return None
-        rotation = np.asarray(cv2.Rodrigues(np.array(self.view.turn_rad))[0])
+        rotation = np.asarray(cv2.Rodrigues(np.array(self.view.turn_rad))[0], dtype=np.float64)
         return ArenaView(self.lens, rotation, np.array(self.view.shift_m), self.view.residual_px)
 
     def as_toml(self) -> str:

@@ -17,10 +17,10 @@ Floats = npt.NDArray[np.float64]
 Grey = npt.NDArray[np.uint8]
 
 REACH_PX = 4.0
-"""How far beside its prediction an edge is found: an e-puck that begins to turn at full speed between two of 30
-frames/s moves a tag's corner by 3 px where a metre has 390."""
+"""How far beside its prediction an edge is found: an e-puck that begins to turn at full speed between two of
+30 frames/s moves a tag's corner by 3 px where a metre has 390."""
 LEAST_AGREEMENT = 0.75
-"""To go on with a tag that was read before; another tag of 36h11, at least 11 of 36 bits away, has at most 0.6."""
+"""To go on with a tag that was read before; another one of 36h11, 11 of 36 bits away, has 0.6 at most."""
 LARGEST_STRETCH = 1.35
 """Of a quad's size from one frame to the next: more is the edge of something else."""
 NEAR_SIDES = 1.5

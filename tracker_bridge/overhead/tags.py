@@ -33,6 +33,10 @@ SMALLEST_SIDE_PX = 6
 CONTOUR_ERROR_PX = 1.5
 """OpenCV's corners are a contour's pixels; the true edge lies so near."""
 
+SAME_QUAD = 0.05
+"""Quads nearer to each other than this part of their size are one. OpenCV's own, larger value keeps the
+outermost of nested ones: often the white paper around a tag, and not the tag."""
+
 
 @dataclass(frozen=True)
 class Tag:
@@ -61,14 +65,13 @@ class TagFamily:
         beyond = [tag for tag in self.ids if not 0 <= tag < size]
         if beyond or not self.ids:
             raise UserError(f"the family {name} has the ids 0 to {size - 1}; asked for {beyond or 'none'}")
-        bits = whole.bytesList[self.ids]
-        self.dictionary = cv2.aruco.Dictionary(bits, whole.markerSize, whole.maxCorrectionBits)
+        self.dictionary = whole
         self.modules = whole.markerSize + 2
         """Modules along a side, the black border included."""
 
     def code(self, tag: int) -> Grey:
         """(modules, modules): 1 where the printed tag is white."""
-        picture = self.dictionary.generateImageMarker(self.ids.index(tag), self.modules)
+        picture = self.dictionary.generateImageMarker(tag, self.modules)
         return np.asarray(picture > 0, dtype=np.uint8)
 
     @property
@@ -87,7 +90,7 @@ class TagDetector:
     def __init__(self, family: TagFamily) -> None:
         self.family = family
         self.book = CodeBook(np.array([family.code(tag) for tag in family.ids]))
-        self._detector = cv2.aruco.ArucoDetector(family.dictionary)
+        self._detector = _proposer(family.dictionary)
 
     def find(self, picture: Grey, windows: Sequence[Window] | None = None) -> list[Tag]:
         """The tags of a picture, or of windows of it."""
@@ -103,7 +106,7 @@ class TagDetector:
         self._detector.setDetectorParameters(parameters)
         read, _, rejected = self._detector.detectMarkers(part)
         quads = np.array([*read, *rejected], dtype=np.float64).reshape(-1, 4, 2)
-        return quads + np.array([window.left, window.top])
+        return np.asarray(quads + np.array([window.left, window.top]))
 
     def _read(self, picture: Grey, quads: Floats) -> list[Tag]:
         if not len(quads):
@@ -121,7 +124,15 @@ class TagDetector:
         return tags
 
 
+def _proposer(dictionary: cv2.aruco.Dictionary) -> cv2.aruco.ArucoDetector:
+    """OpenCV's detector for what it does before it reads. It reads all the same: one code will do."""
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.minGroupDistance = parameters.minMarkerDistanceRate = SAME_QUAD
+    one = cv2.aruco.Dictionary(dictionary.bytesList[:1], dictionary.markerSize, 0)
+    return cv2.aruco.ArucoDetector(one, parameters)
+
+
 def _overlap(tag: Tag, other: Tag) -> bool:
-    """Whether two readings are of one print: their middles lie within half a side, of a square of that area."""
+    """Whether two readings are of one print: their middles lie within half a side of an equal square."""
     apart = np.linalg.norm(tag.corners.mean(0) - other.corners.mean(0))
     return bool(apart < np.sqrt(cv2.contourArea(tag.corners.astype(np.float32))) / 2)

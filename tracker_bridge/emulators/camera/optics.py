@@ -79,13 +79,14 @@ class Station:
     def axes(self) -> Floats:
         """(3, 3): columns are the camera's right, down and forward in the arena frame."""
         down = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
-        return _turn(2, self.yaw_rad) @ _turn(0, self.pitch_rad) @ _turn(1, -self.roll_rad) @ down
+        turned = _turn(2, self.yaw_rad) @ _turn(0, self.pitch_rad) @ _turn(1, -self.roll_rad) @ down
+        return np.asarray(turned)
 
 
 def _turn(axis: int, angle_rad: float) -> Floats:
     """(3, 3): a right-handed turn about x (0), y (1) or z (2)."""
     i, j = [(1, 2), (2, 0), (0, 1)][axis]
-    turn = np.eye(3)
+    turn: Floats = np.eye(3)
     turn[i, i] = turn[j, j] = math.cos(angle_rad)
     turn[j, i] = math.sin(angle_rad)
     turn[i, j] = -turn[j, i]

@@ -110,7 +110,7 @@ class CameraRenderer:
         return np.stack([x_m, y_m, height_m], -1), pose[2] + velocity[2] * moments_s
 
     def _moments_in(self, box: _Box) -> Floats:
-        """(rows, columns, subpixels): when each ray is seen, from the middle of the exposure of the middle row."""
+        """(rows, columns, subpixels): when each ray is seen, from the middle of the middle row's exposure."""
         rows = np.arange(box.top, box.bottom, dtype=np.float32) - self.optics.height / 2
         shape = (box.bottom - box.top, box.right - box.left, SUBPIXELS**2)
         moments_s = self.faults.exposure_s * self._moments + self.faults.row_delay_s * rows[:, None, None]
