@@ -21,8 +21,6 @@ ACROSS = np.linspace(-1.0, 1.0, 15)
 FINE_MODULES, FINE_LEAST_PX, FINE_MOST_PX = 0.6, 1.0, 1.5
 """Reach of the centroid: within the border's own module, and wide enough for the blur of a lens."""
 
-NO_SECOND_MAP = np.empty(0, dtype=np.float32)
-"""OpenCV takes places as one map of pairs or as two of x and y."""
 FINE_ROUNDS = 3
 """Samples then lie evenly about the edges; on rendered frames a fourth round changed nothing."""
 
@@ -85,8 +83,8 @@ def _rises(picture: Grey, quads: Floats, reach_px: Floats) -> tuple[Floats, Floa
 
 def sampled(picture: Grey, points: Floats) -> Floats:
     """Grey values at (n, ..., 2) pixels, between pixels linearly; beyond the picture its edge goes on."""
-    sheet = points.reshape(len(points), -1, 2).astype(np.float32)
-    grey = cv2.remap(picture, sheet, NO_SECOND_MAP, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    across, down = points.reshape(len(points), -1, 2).astype(np.float32).transpose(2, 0, 1).copy()
+    grey = cv2.remap(picture, across, down, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     return np.asarray(grey, dtype=np.float64).reshape(points.shape[:-1])
 
 
