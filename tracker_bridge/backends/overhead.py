@@ -14,7 +14,7 @@ from swarm.errors import UserError
 from swarm.geometry import Pose
 from tracker_bridge.backends.interface import TrackedPose
 from tracker_bridge.overhead.arena_view import ArenaView, PlanePose
-from tracker_bridge.overhead.frames import Frame, FrameSource, open_frames
+from tracker_bridge.overhead.frames import Frame, FrameSource, is_device, open_frames
 from tracker_bridge.overhead.settings import Calibration, CameraSettings, RobotTag, load_settings
 from tracker_bridge.overhead.tag_tracking import TagTracker
 from tracker_bridge.overhead.tags import TagDetector, TagFamily
@@ -115,4 +115,5 @@ def _camera(path: Path, settings: CameraSettings, family: TagFamily) -> Camera:
         raise UserError(
             f"{calibration}: the camera's place is missing; run `tracker-bridge calibrate camera`"
         )
-    return Camera(open_frames(settings.source, settings.delay_s), view, TagTracker(TagDetector(family)))
+    source = settings.source if is_device(settings.source) else str(path.parent / settings.source)
+    return Camera(open_frames(source, settings.delay_s), view, TagTracker(TagDetector(family)))

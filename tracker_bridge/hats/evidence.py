@@ -23,6 +23,12 @@ class Catalogue:
         shapes = self._hats[:, self._ways[len(points)]].reshape(-1, len(points))
         return np.asarray((residuals(shapes, points) ** 2).sum(-1))
 
+    def without(self, misfits_m2: Floats, hats: list[int]) -> Floats:
+        """The same with infinite misfits for hats that it cannot be."""
+        left = misfits_m2.reshape(len(self._hats), -1).copy()
+        left[hats] = np.inf
+        return left.ravel()
+
     def way(self, number: int, seen: int) -> tuple[int, list[int]]:
         """The hat and, for each marker of the group, its pin, of a place in `misfits_m2`."""
         hat, way = divmod(number, len(self._ways[seen]))
@@ -32,4 +38,4 @@ class Catalogue:
 def margin(misfits_m2: Floats, noise_m: float) -> float:
     """By how much the best way beats the second best, as a logarithm of their likelihoods' ratio."""
     best, second = np.partition(misfits_m2, 1)[:2]
-    return float((second - best) / (2 * noise_m**2))
+    return float((second - best) / (2 * noise_m**2)) if np.isfinite(best) else 0.0

@@ -16,7 +16,8 @@ SAME_PLACE_M = 0.05
 
 @dataclass(frozen=True)
 class HatEvent:
-    """Something to tell: "named", "lost", "doubted", "twice", "swap", "missing pin" or "stray reflection"."""
+    """Something to tell: "named", "lost", "doubted", "twice", "swap", "missing pin", "ambiguous" (three
+    markers that several hats share) or "stray reflection"."""
 
     kind: str
     text: str
@@ -61,6 +62,12 @@ class HatHistory:
         name = self.hats[hat].name
         text = f"hat {name} is seen a second time, at {_at(place)}: do two robots wear it?"
         return [HatEvent("twice", text, (name,))] if self._first_time(("twice", hat, 0)) else []
+
+    def ambiguous(self, hat: int, place: complex) -> list[HatEvent]:
+        """A group of three markers is seen for long, and more than one hat may have lost its fourth."""
+        name = self.hats[hat].name
+        text = f"three markers at {_at(place)} are hat {name} or another hat without a pin: set the pin again"
+        return [HatEvent("ambiguous", text, (name,))] if self._first_time(("ambiguous", hat, 0)) else []
 
     def pins(self, body: Body, seen: list[bool], t_ns: int) -> list[HatEvent]:
         """Notice pins of a named body that have long not been seen."""

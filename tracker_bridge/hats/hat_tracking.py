@@ -34,8 +34,8 @@ FEWEST_SIGHTINGS = {4: 3, 3: 100}
 """By pins: a second of clouds at 100 Hz before a group of three is taken for a hat that lost a pin."""
 GROUP_NOISES = 4.0
 """Markers of a new group fit a pattern to so many standard deviations."""
-MEAN_MISFIT, LARGEST_DOUBT = 9.0, 12.0
-"""In units of the noise's variance; 5 is expected of four pins and 25 or more of another hat."""
+MEAN_MISFIT, LARGEST_DOUBT, ANOTHER_HAT = 9.0, 12.0, 25.0
+"""In units of the noise's variance; 5 is expected of four pins and 25 or more of another hat's."""
 DOUBT_GAIN = 0.1
 """Of the moving average of misfits, whose standard deviation is then 0.7 of those units."""
 
@@ -98,15 +98,18 @@ class HatTracker:
         misfits_m2 = self._catalogue.misfits_m2(group)
         body.misfits_m2 = misfits_m2 if body.misfits_m2 is None else body.misfits_m2 + misfits_m2
         body.sightings += 1
-        mean_m2 = float(body.misfits_m2.min()) / body.sightings
-        if (
-            body.sightings < FEWEST_SIGHTINGS[body.size]
-            or mean_m2 > MEAN_MISFIT * self._noise_m**2
-            or margin(body.misfits_m2, self._noise_m) < SURE
-        ):
+        if body.sightings < FEWEST_SIGHTINGS[body.size]:
             return []
-        hat, way = self._catalogue.way(int(body.misfits_m2.argmin()), body.size)
-        if any(other.hat == hat for other in self._bodies):
+        named = [other.hat for other in self._bodies if other.hat is not None]
+        misfits_m2 = body.misfits_m2
+        if body.size < MOST_PINS:  # hats share three pins: who is seen elsewhere is out of the question
+            misfits_m2 = self._catalogue.without(misfits_m2, named)
+        hat, way = self._catalogue.way(int(misfits_m2.argmin()), body.size)
+        if float(misfits_m2.min()) / body.sightings > MEAN_MISFIT * self._noise_m**2:
+            return []
+        if margin(misfits_m2, self._noise_m) < SURE:
+            return self._history.ambiguous(hat, body.middle) if body.size < MOST_PINS else []
+        if hat in named:
             return self._history.twice(hat, body.middle)
         self._name(body, hat, way, group, t_ns)
         return self._history.named(hat, body.middle)
@@ -127,7 +130,10 @@ class HatTracker:
         for number in np.flatnonzero(sightings.believed):
             body, seen = self._bodies[number], int(sightings.seen[number])
             middle, angle_rad = complex(sightings.middles[number]), float(sightings.angles_rad[number])
-            if body.hat is None or (seen < body.size and _beside(middle, free, self._reach_m)):
+            if body.hat is None:
+                continue
+            if seen < body.size and _beside(middle, free, self._reach_m):
+                body.doubt_m2 += DOUBT_GAIN * (ANOTHER_HAT * self._noise_m**2 - body.doubt_m2)
                 continue
             pose = Pose(middle.real, middle.imag, wrap_angle_rad(angle_rad))
             residual_m = float(sightings.misfits_m2[number] / seen) ** 0.5

@@ -104,13 +104,18 @@ class LiveFrames:
 
 def open_frames(source: str, delay_s: float = 0.0) -> FrameSource:
     """Open a camera ("0" or "/dev/video0"), a video or a folder; UserError if there is none."""
-    if source.isdigit() or source.startswith("/dev/"):
+    if is_device(source):
         capture = cv2.VideoCapture(int(source) if source.isdigit() else source, cv2.CAP_V4L2)
         if not capture.isOpened():
             raise UserError(f"camera {source} cannot be opened: is it plugged in, and free?")
         return LiveFrames(capture, delay_s)
     path = Path(source)
     return RecordedFrames(pictures_of(path), USUAL_RATE_HZ if path.is_dir() else _rate_hz(path))
+
+
+def is_device(source: str) -> bool:
+    """Whether a source is a camera, by number or device, and not a file."""
+    return source.isdigit() or source.startswith("/dev/")
 
 
 def pictures_of(path: Path) -> Iterator[Grey]:

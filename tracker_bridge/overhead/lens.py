@@ -18,6 +18,8 @@ FEWEST_PICTURES = 5
 """Fewer views do not separate focal length from distance."""
 LARGEST_RESIDUAL_PX = 1.0
 """A board that bends or corners that were mistaken leave more than this."""
+UNTIL_EXACT = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 30, 1e-9)
+"""OpenCV's usual 5 steps leave 0.3 mm at the corner of a 3 m arena under a wide lens."""
 NO_DISTORTION = (0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -51,7 +53,9 @@ class Lens:
 
     def directions(self, pixels: Floats) -> Floats:
         """(n, 2): x and y of the directions (x, y, 1) that (n, 2) pixels see."""
-        flat = cv2.undistortPoints(pixels.reshape(-1, 1, 2), self.matrix, self.coefficients)
+        flat = cv2.undistortPoints(
+            pixels.reshape(-1, 1, 2), self.matrix, self.coefficients, criteria=UNTIL_EXACT
+        )
         return np.asarray(flat, dtype=np.float64).reshape(-1, 2)
 
 

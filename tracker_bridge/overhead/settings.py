@@ -44,7 +44,7 @@ class CameraSettings:
     """[[camera]]: one of the cameras."""
 
     source: str
-    """Its number or device, or a video or a folder of pictures."""
+    """Its number or device; or a video or a folder of pictures, from the place of this file."""
     calibration: str
     """The file that `tracker-bridge calibrate camera` wrote, from the place of this file."""
     delay_s: Annotated[float, Between(0, 1)] = 0.0
