@@ -12,7 +12,7 @@ from robot_agent.drivers.kinematics import WheelSpeeds
 from robot_agent.inbox import AgentInbox
 from robot_agent.navigation.motion import Motion
 from robot_agent.navigation.pose_estimator import PoseEstimator
-from robot_agent.policies.policy import Brain, Transition
+from robot_agent.policies.policy import Policy, Transition
 from robot_agent.reports import Reporter
 from swarm.clock import NS_PER_S
 from swarm.errors import UserError
@@ -70,7 +70,7 @@ class Agent:
     def __init__(
         self,
         compartment: Compartment,
-        brain: Brain,
+        policy: Policy,
         body: Body,
         estimator: PoseEstimator,
         motion: Motion,
@@ -83,7 +83,7 @@ class Agent:
         self.activity = Activity.WAITING
         self.state = compartment.grid.start
         """The cell that the robot stands in or is leaving."""
-        self.brain = brain
+        self.policy = policy
         self.body = body
         self._compartment = compartment
         self._estimator = estimator
@@ -119,18 +119,18 @@ class Agent:
 
     def decide(self, seen: Seen) -> None:
         """Algorithm 3's choice, when the robot stands in a cell's centre and the run is on."""
-        if self._inbox.stopped or self.brain.finished:
-            self._stand(Activity.FINISHED if self.brain.finished else Activity.WAITING)
+        if self._inbox.stopped or self.policy.finished:
+            self._stand(Activity.FINISHED if self.policy.finished else Activity.WAITING)
         elif self.activity is Activity.VISITING:
             self._end_visit_when_home(seen)
         elif self._inbox.visit_order and self._begin_visit and self.activity in STANDS_BETWEEN_MOVES:
             self._stand(Activity.VISITING)
-            self.brain.abandon()
+            self.policy.abandon()
             self._visit = self._begin_visit(self._inbox.visit_order)
         elif self.activity is Activity.WAITING and self._is_at_home(seen) and self._inbox.running(seen.t_ns):
             self._go_to(self._cell_to_go_on_from(seen.pose), Activity.RETURNING)
         elif self.activity is Activity.DECIDING and self._inbox.running(seen.t_ns):
-            self._begin(self.brain.choose(self.state), seen.t_ns)
+            self._begin(self.policy.choose(self.state), seen.t_ns)
 
     def act(self, seen: Seen) -> WheelSpeeds:
         """Drive as the motion says; what was really sent comes back."""
@@ -150,7 +150,7 @@ class Agent:
             choice, self._choice = self._choice, None
             duration_s = (seen.t_ns - choice.t_ns) / NS_PER_S
             self.state = choice.next_state
-            self.brain.learn(
+            self.policy.learn(
                 Transition(choice.state, choice.action, choice.next_state, duration_s, choice.blocked)
             )
             self.activity = Activity.DECIDING
@@ -161,7 +161,7 @@ class Agent:
     def report(self, seen: Seen, sent: WheelSpeeds) -> None:
         """The command as sent at every tick, the status once a second."""
         self._reporter.command(sent, seen.pose)
-        self._reporter.status(seen.t_ns, self.activity.value, self.brain, seen.pose_age_s, self._inbox.bad)
+        self._reporter.status(seen.t_ns, self.activity.value, self.policy, seen.pose_age_s, self._inbox.bad)
 
     def resume_from(self, checkpoint: Checkpoint) -> None:
         """Keep the checkpoint up to date after every move, and go on from it if it has something."""
@@ -169,7 +169,7 @@ class Agent:
         saved = checkpoint.load()
         if saved:
             try:
-                self.brain.restore(saved["brain"])
+                self.policy.restore(saved["policy"])
                 self.state = int(saved["state"])
             except (KeyError, TypeError, ValueError) as error:
                 raise UserError(f"{checkpoint.path}: does not fit this experiment ({error})") from error
@@ -250,8 +250,8 @@ class Agent:
         if self._checkpoint:
             at_goal = self.state == self._compartment.grid.goal
             state = self._compartment.grid.start if at_goal else self.state
-            self._checkpoint.save({"state": state, "brain": self.brain.snapshot()})
+            self._checkpoint.save({"state": state, "policy": self.policy.snapshot()})
 
     def _abandon_choice(self) -> None:
         self._choice = None
-        self.brain.abandon()
+        self.policy.abandon()

@@ -17,7 +17,7 @@ from robot_agent.navigation.motion import Motion, MotionSettings
 from robot_agent.navigation.pose_estimator import PoseAt, PoseEstimator
 from robot_agent.policies.expert import Expert
 from robot_agent.policies.learner import Learner
-from robot_agent.policies.policy import Brain, Publish
+from robot_agent.policies.policy import Policy, Publish
 from robot_agent.reports import Reporter
 from swarm.config.experiment import Experiment, RobotSettings, Role
 from swarm.learning.controller import Controller
@@ -25,7 +25,7 @@ from swarm.learning.memory import ImitationMemory
 from swarm.learning.q_table import QTable
 from swarm.learning.random import spawned_generator
 from swarm.messages.topics import Topic
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
 
 if TYPE_CHECKING:
     from robot_agent.imitation.visit import BeginVisit
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 class Assembly:
     """Makes the agents of one process for one trial."""
 
-    def __init__(self, experiment: Experiment, link: Link, trial: int) -> None:
+    def __init__(self, experiment: Experiment, node: Node, trial: int) -> None:
         self._experiment = experiment
-        self._link = link
+        self._node = node
         self._seed = experiment.run.seed
         self._trial = trial
 
@@ -45,28 +45,28 @@ class Assembly:
         settings, robot = self._experiment, self._experiment.robot_named(name)
 
         def publish(topic: Topic[Any], message: Message) -> None:
-            self._link.publish(topic, message, name)
+            self._node.publish(topic, message, name)
 
         generator = partial(self._generator, robot)
-        parts = DriverParts(settings, robot, EpuckGeometry(), self._link, generator)
+        parts = DriverParts(settings, robot, EpuckGeometry(), self._node, generator)
         driver = make_driver(parts)
-        brain = self._brain(robot, publish)
+        policy = self._policy(robot, publish)
         estimator = PoseEstimator(parts.geometry)
         motion = MotionSettings(period_s=settings.simulation.tick_s)
         return Agent(
             settings.compartment(robot),
-            brain,
+            policy,
             driver.body,
             estimator,
             Motion(motion, parts.geometry),
-            AgentInbox(self._link, name),
+            AgentInbox(self._node, name),
             Reporter(publish),
             settings.learning.blocked_move_s,
             settings.learning.rest_s,
-            _visits(parts, driver, brain, estimator.pose, publish),
+            _visits(parts, driver, policy, estimator.pose, publish),
         )
 
-    def _brain(self, robot: RobotSettings, publish: Publish) -> Brain:
+    def _policy(self, robot: RobotSettings, publish: Publish) -> Policy:
         grid = self._experiment.compartment(robot).grid
         if robot.role is Role.EXPERT:
             return Expert(grid, publish)
@@ -93,11 +93,11 @@ class Assembly:
 
 
 def _visits(
-    parts: DriverParts, driver: Driver, brain: Brain, pose_at: PoseAt, publish: Publish
+    parts: DriverParts, driver: Driver, policy: Policy, pose_at: PoseAt, publish: Publish
 ) -> BeginVisit | None:
     """Only a robot that watches loads what it takes to see."""
-    if not parts.robot.watches or not isinstance(brain, Learner):
+    if not parts.robot.watches or not isinstance(policy, Learner):
         return None
     from robot_agent.imitation.assembly import visits_of
 
-    return visits_of(parts, driver, brain, pose_at, publish)
+    return visits_of(parts, driver, policy, pose_at, publish)

@@ -8,21 +8,21 @@ from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
 
 CONDUCTOR_SILENT_S = 5.0
 
 
 class AgentInbox:
-    """The three feeds of one robot.
+    """The three subscriptions of one robot.
 
     A robot goes on only while it hears the run's state: after 5 s without it finishes its move and waits.
     """
 
-    def __init__(self, link: Link, robot: str) -> None:
-        self._poses = link.subscribe(topics.POSE, robot)
-        self._orders = link.subscribe(topics.ORDER, robot)
-        self._run_states = link.subscribe(topics.RUN_STATE)
+    def __init__(self, node: Node, robot: str) -> None:
+        self._poses = node.subscribe(topics.POSE, robot)
+        self._orders = node.subscribe(topics.ORDER, robot)
+        self._run_states = node.subscribe(topics.RUN_STATE)
         self._phase = pb.RunState.PHASE_UNSPECIFIED
         self._heard_ns = 0
         self._order = pb.Order(kind=pb.Order.RUN)

@@ -45,19 +45,19 @@ def run(arguments: argparse.Namespace) -> None:
     experiment = load_experiment(arguments)
     names = _names(arguments.robot, experiment)
     leave_on_signals()
-    with joined(arguments, "robot", names, experiment.simulation.tick_s) as link:
-        assembly = Assembly(experiment, link, arguments.trial)
+    with joined(arguments, "robot", names, experiment.simulation.tick_s) as node:
+        assembly = Assembly(experiment, node, arguments.trial)
         agents = [assembly.agent(name) for name in names]
         if arguments.state:
             run = f"{experiment.run.name}, seed {experiment.run.seed}, trial {arguments.trial}"
             for agent, name in zip(agents, names, strict=True):
                 agent.resume_from(Checkpoint(arguments.state, name, run))
         try:
-            link.run(partial(_step, agents))
+            node.run(partial(_step, agents))
         finally:
             _stop(agents)
             if arguments.keys:
-                _write_keys(arguments.keys, link.keys_received)
+                _write_keys(arguments.keys, node.keys_received)
 
 
 def _step(agents: list[Agent], t_ns: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robot_agent.drivers.kinematics import WheelSpeeds
-from robot_agent.policies.policy import Brain, Publish
+from robot_agent.policies.policy import Policy, Publish
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
@@ -34,7 +34,7 @@ class Reporter:
             ),
         )
 
-    def status(self, t_ns: int, activity: str, brain: Brain, pose_age_s: float, bad: int) -> None:
+    def status(self, t_ns: int, activity: str, policy: Policy, pose_age_s: float, bad: int) -> None:
         """Once a second; a pose that never came counts as 100,000 s old."""
         if t_ns < self._status_due_ns:
             return
@@ -43,8 +43,8 @@ class Reporter:
             topics.STATUS,
             pb.Status(
                 activity=activity,
-                moves=brain.moves,
-                tracks=brain.tracks,
+                moves=policy.moves,
+                tracks=policy.tracks,
                 pose_age_s=min(pose_age_s, LONGEST_AGE_S),
                 bad_messages=bad,
             ),

@@ -19,7 +19,7 @@ from swarm.cli.output import print_json
 from swarm.config.experiment import Experiment
 from swarm.errors import guarded
 from swarm.runtime.process import OneLineParser, leave_on_signals
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 
 
 def main() -> None:
@@ -32,13 +32,13 @@ def run(arguments: argparse.Namespace) -> None:
     leave_on_signals()
     experiment = Experiment.load(arguments.experiment)
     experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
-    with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_bus:
+    with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
         trials: Sequence[int] = range(experiment.run.trials)
         set_stage = simulated(experiment, arguments.speed, progress.warn)
         if arguments.listen:
-            settings = BusSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
-            bus = open_bus.enter_context(Bus(settings))
-            trials, set_stage = [arguments.trial], laboratory(experiment, bus, progress.warn)
+            settings = SessionSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
+            session = open_session.enter_context(Session(settings))
+            trials, set_stage = [arguments.trial], laboratory(experiment, session, progress.warn)
         directory = RunDirectory.create(arguments.out, experiment.run.name)
         summary = Run(experiment, arguments.experiment, directory, set_stage, trials, progress).run()
     if arguments.json:

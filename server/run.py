@@ -56,7 +56,7 @@ class Run:
 
     def _trial(self, trial: int, file: Path) -> TrialResult:
         with self.set_stage(trial, file, self.directory.output(trial)) as stage:
-            conductor = Conductor(self.experiment, trial, stage.hub.publish, stage.hand)
+            conductor = Conductor(self.experiment, trial, stage.hub.publish, stage.carrier)
             recorder = Recorder(
                 self.directory.log(trial), metadata(self.experiment, file, trial, self.versions)
             )

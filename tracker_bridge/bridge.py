@@ -5,9 +5,10 @@ from __future__ import annotations
 from swarm.clock import NS_PER_S
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
+from tracker_bridge.backends.datagrams import Receiving
 from tracker_bridge.backends.interface import Backend, TrackedPose
-from tracker_bridge.plausibility import Gate
+from tracker_bridge.plausibility import Plausibility
 
 LOST_AFTER_NS = 2 * NS_PER_S
 
@@ -15,12 +16,13 @@ LOST_AFTER_NS = 2 * NS_PER_S
 class Bridge:
     """Between a tracking system and the swarm. Poses of robots that the experiment does not name are left."""
 
-    def __init__(self, backend: Backend, gate: Gate, link: Link, robots: list[str]) -> None:
+    def __init__(self, backend: Backend, plausibility: Plausibility, node: Node, robots: list[str]) -> None:
         self._backend = backend
-        self._gate = gate
-        self._link = link
+        self._plausibility = plausibility
+        self._node = node
         self._seen_ns: dict[str, int | None] = dict.fromkeys(robots)
         self._refused: dict[str, str] = {}
+        self._told_of: set[str] = set()
 
     def step(self, t_ns: int) -> None:
         """One tick: pass on what the tracking system measured since the last."""
@@ -31,9 +33,11 @@ class Bridge:
             if seen_ns is not None and t_ns - seen_ns > LOST_AFTER_NS:
                 self._seen_ns[robot] = None
                 self._report("lost", f"{robot}: no believable pose for {LOST_AFTER_NS // NS_PER_S} s")
+        if isinstance(self._backend, Receiving):
+            self._tell_of_datagrams(self._backend)
 
     def _pass_on(self, tracked: TrackedPose) -> None:
-        reason = self._gate.reason_against(tracked)
+        reason = self._plausibility.reason_against(tracked)
         kind = reason.split(" ")[0] if reason else ""
         if reason and self._refused.get(tracked.robot) != kind:
             self._report("refused", f"{tracked.robot}: {reason}")
@@ -41,11 +45,26 @@ class Bridge:
         if reason:
             return
         self._seen_ns[tracked.robot] = tracked.captured_t_ns
-        pose = tracked.pose
-        message = pb.Pose(
-            x_m=pose.x_m, y_m=pose.y_m, theta_rad=pose.theta_rad, captured_t_ns=tracked.captured_t_ns
-        )
-        self._link.publish(topics.POSE, message, tracked.robot)
+        self._node.publish(topics.POSE, _message(tracked), tracked.robot)
+
+    def _tell_of_datagrams(self, backend: Receiving) -> None:
+        """Each reason for which datagrams are refused, once."""
+        for reason in [reason for reason in backend.arrivals.refused if reason not in self._told_of]:
+            self._told_of.add(reason)
+            self._report("datagram", f"refused: {reason}")
 
     def _report(self, name: str, text: str) -> None:
-        self._link.publish(topics.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))
+        self._node.publish(topics.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))
+
+
+def _message(tracked: TrackedPose) -> pb.Pose:
+    return pb.Pose(
+        x_m=tracked.pose.x_m,
+        y_m=tracked.pose.y_m,
+        theta_rad=tracked.pose.theta_rad,
+        captured_t_ns=tracked.captured_t_ns,
+        received_t_ns=tracked.received_t_ns,
+        source_t_ns=tracked.source_t_ns,
+        residual_m=tracked.residual_m,
+        quality=tracked.quality,
+    )

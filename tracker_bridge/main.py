@@ -1,4 +1,4 @@
-"""The `tracker-bridge` command: the process beside the tracking system."""
+"""The `tracker-bridge` command: the process beside the tracking system, and what helps to set it up."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from swarm.runtime.process import (
     leave_on_signals,
     load_experiment,
 )
-from tracker_bridge.backends.registry import backend_named
+from tracker_bridge.backends.interface import Setup
+from tracker_bridge.backends.registry import system_named
 from tracker_bridge.bridge import Bridge
 from tracker_bridge.commands import VERBS
-from tracker_bridge.plausibility import Gate, GateSettings
+from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
 
 def main() -> None:
@@ -27,33 +28,39 @@ def main() -> None:
 
 def call(words: list[str]) -> None:
     """Do what a verb says, or, without one, pass poses on."""
-    if not words or words[0] not in VERBS:
+    verb = next((verb for verb in (" ".join(words[:2]), *words[:1]) if verb in VERBS), None)
+    if verb is None:
         run(_parser().parse_args(words))
         return
-    verb = import_module(f"tracker_bridge.commands.{words[0]}")
-    parser = OneLineParser(prog=f"tracker-bridge {words[0]}", description=VERBS[words[0]])
-    verb.add_arguments(parser)
-    verb.run(parser.parse_args(words[1:]))
+    command = import_module(f"tracker_bridge.commands.{verb.replace(' ', '_')}")
+    parser = OneLineParser(prog=f"tracker-bridge {verb}", description=VERBS[verb])
+    command.add_arguments(parser)
+    command.run(parser.parse_args(words[len(verb.split()) :]))
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and pass poses on until the run ends or the process is told to leave."""
     experiment = load_experiment(arguments)
-    make_backend = backend_named(experiment.tracker.backend)
+    system = system_named(experiment.tracker.backend)
     leave_on_signals()
-    with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s) as link:
-        backend = make_backend(experiment, link, arguments.trial)
+    period_s = system.poll_s or experiment.simulation.tick_s
+    with (
+        joined(arguments, "tracker", ["bridge"], period_s) as node,
+        system.open(Setup(experiment, node, arguments.trial)) as backend,
+    ):
         arena = experiment.arena
-        gate = Gate(GateSettings(arena.width_m, arena.height_m))
-        bridge = Bridge(backend, gate, link, [robot.id for robot in experiment.robot])
-        link.run(bridge.step)
+        plausibility = Plausibility(PlausibilitySettings(arena.width_m, arena.height_m))
+        bridge = Bridge(backend, plausibility, node, [robot.id for robot in experiment.robot])
+        node.run(bridge.step)
 
 
 def _parser() -> OneLineParser:
+    verbs = "\n".join(f"  tracker-bridge {verb:<17} {meaning}" for verb, meaning in VERBS.items())
     parser = OneLineParser(
         prog="tracker-bridge",
-        description="The process beside the tracking system: it tells each robot where that robot is, and no "
-        "other. The experiment's [tracker] table says which tracking system it is.",
+        description="The process beside the tracking system: it tells each robot where that robot is.\n"
+        "The experiment's [tracker] table says which system it is.\n\nTo set it up:\n" + verbs,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add_common_arguments(parser)
     return parser

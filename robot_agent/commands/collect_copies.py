@@ -7,7 +7,12 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from robot_agent.offline.observation_session import KINDS, Rehearsed, rehearsal_experiment, rehearsals
+from robot_agent.offline.observation_session import (
+    KINDS,
+    ObservedDemonstration,
+    observed_demonstrations,
+    offline_experiment,
+)
 from swarm.config.experiment import Watching
 from swarm.errors import UserError
 from swarm.geometry import Move
@@ -16,7 +21,7 @@ from swarm.surrogate.copies import CopyPair, write_copies
 
 
 def collect(arguments: argparse.Namespace) -> None:
-    """Rehearse, and store what was shown and what was copied."""
+    """Show and copy demonstrations, and store what was shown and what was copied."""
     if arguments.demonstrations < 1:
         raise UserError(f"--demonstrations {arguments.demonstrations}: give at least 1")
     if arguments.out.exists():
@@ -28,16 +33,16 @@ def collect(arguments: argparse.Namespace) -> None:
 
 
 def _pairs(arguments: argparse.Namespace) -> Iterator[CopyPair]:
-    experiment = rehearsal_experiment(Watching(arguments.profile), arguments.light)
+    experiment = offline_experiment(Watching(arguments.profile), arguments.light)
     for kind in KINDS:
-        many = rehearsals(experiment, kind, arguments.demonstrations, arguments.seed)
-        for number, rehearsed in enumerate(many, 1):
+        many = observed_demonstrations(experiment, kind, arguments.demonstrations, arguments.seed)
+        for number, observed in enumerate(many, 1):
             _show(kind, number, arguments.demonstrations)
-            yield _pair(kind, rehearsed)
+            yield _pair(kind, observed)
 
 
-def _pair(kind: str, rehearsed: Rehearsed) -> CopyPair:
-    return CopyPair(kind, rehearsed.demonstration.moves, tuple(map(Move, rehearsed.copied_moves)))
+def _pair(kind: str, observed: ObservedDemonstration) -> CopyPair:
+    return CopyPair(kind, observed.demonstration.moves, tuple(map(Move, observed.copied_moves)))
 
 
 def _told(arguments: argparse.Namespace) -> list[str]:

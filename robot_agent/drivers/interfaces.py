@@ -12,7 +12,7 @@ from robot_agent.drivers.kinematics import EpuckGeometry, WheelSpeeds, WheelStep
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.frames import Frame
 from swarm.config.experiment import Experiment, RobotSettings
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
 
 
 class Driver(Protocol):
@@ -33,7 +33,7 @@ class DriverParts:
     experiment: Experiment
     robot: RobotSettings
     geometry: EpuckGeometry
-    link: Link
+    node: Node
     generator: Callable[[str], np.random.Generator]
 
 

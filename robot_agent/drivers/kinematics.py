@@ -55,13 +55,13 @@ class EpuckGeometry:
     """
 
     step_m: float = 0.1288e-3
-    track_m: float = 0.053
+    wheel_base_m: float = 0.053
     max_steps_per_s: float = 1000.0
     body_radius_m: float = 0.035
 
     def wheel_speeds(self, forward_m_per_s: float, turn_rad_per_s: float) -> WheelSpeeds:
         """The wheel speeds of a differential drive for a forward and a counter-clockwise turning speed."""
-        half_turn_m_per_s = 0.5 * self.track_m * turn_rad_per_s
+        half_turn_m_per_s = 0.5 * self.wheel_base_m * turn_rad_per_s
         return WheelSpeeds(
             (forward_m_per_s - half_turn_m_per_s) / self.step_m,
             (forward_m_per_s + half_turn_m_per_s) / self.step_m,

@@ -1,4 +1,4 @@
-"""Gives a robot that is to watch others its eyes: camera, colour table, seer.
+"""Gives a robot that is to watch others its eyes: camera, colour table, detector.
 
 Everything here is imported only by robots that watch, so that the others stay small.
 """
@@ -18,7 +18,7 @@ from robot_agent.policies.policy import Publish
 from robot_agent.vision.camera_model import CameraModel, load_camera_model
 from robot_agent.vision.colour_calibration import learn_colour_table
 from robot_agent.vision.colour_table import ColourTable, load_colour_table
-from robot_agent.vision.detector import PROFILES, Seer
+from robot_agent.vision.detector import PROFILES, Detector
 from swarm.config.experiment import Experiment
 from swarm.messages import swarm_pb2 as pb
 
@@ -35,7 +35,7 @@ def visits_of(
     watched = experiment.compartment(demonstrator)
     eyes = Eyes(
         driver.camera(model),
-        Seer(settings.profile.value, model, table),
+        Detector(settings.profile.value, model, table),
         pose_at,
         settings,
         experiment.arena.cell_m,

@@ -10,9 +10,9 @@ from typing import TypeVar
 import numpy as np
 
 from robot_agent.imitation.compass_moves import read_moves
-from robot_agent.imitation.demonstration import Place, Rest, demonstration_rests, find_rests, longest_seen
+from robot_agent.imitation.demonstration import Place, Stop, demonstration_stops, find_stops, longest_seen
 from robot_agent.imitation.line_fitting import fit_segments, snap
-from robot_agent.imitation.positions import ObservedPosition, Sightings, inliers, plausible_sightings
+from robot_agent.imitation.positions import ObservedPosition, Trajectory, inliers, plausible_trajectory
 from robot_agent.imitation.segments import Segment, find_vertices, segments_between
 from robot_agent.imitation.smoothing import Smoothed, smooth
 from swarm.geometry import Move
@@ -87,19 +87,19 @@ def copy_moves(
         return NoCopy(
             f"{len(positions)} positions are more than {MOST_POSITIONS}: observe for a shorter time"
         )
-    sightings = plausible_sightings(positions)
-    sightings = sightings.where(inliers(sightings))
-    if lost := _lost(len(sightings), expected_frames):
+    trajectory = plausible_trajectory(positions)
+    trajectory = trajectory.where(inliers(trajectory))
+    if lost := _lost(len(trajectory), expected_frames):
         return NoCopy(lost)
-    smoothed = smooth(sightings)
-    rests = find_rests(smoothed, cell_m)
-    shown = demonstration_rests(smoothed, rests, cell_m, start_m)
+    smoothed = smooth(trajectory)
+    stops = find_stops(smoothed, cell_m)
+    shown = demonstration_stops(smoothed, stops, cell_m, start_m)
     if len(shown) < 2:
-        return NoCopy(_no_demonstration(rests))
+        return NoCopy(_no_demonstration(stops))
     shown = list(longest_seen(smoothed, shown))
     if len(shown) < 2:
         return NoCopy("the demonstrator was out of sight for so long that moves may have been missed")
-    copied = _copy(sightings, smoothed, shown, profile, cell_m)
+    copied = _copy(trajectory, smoothed, shown, profile, cell_m)
     return copied if copied.moves else NoCopy("the demonstrator moved, but by less than a cell")
 
 
@@ -113,41 +113,41 @@ def _lost(seen: int, expected_frames: int) -> str | None:
     return None
 
 
-def _no_demonstration(rests: Sequence[Rest]) -> str:
-    if not rests:
+def _no_demonstration(stops: Sequence[Stop]) -> str:
+    if not stops:
         return "the demonstrator never stood still, so no move begins or ends in view"
-    if len(rests) == 1:
+    if len(stops) == 1:
         return "the demonstrator stood still, or moved only while entering or leaving the observation"
     return "the demonstrator only drove back to its start"
 
 
 def _copy(
-    sightings: Sightings, smoothed: Smoothed, shown: Sequence[Rest], profile: CopyProfile, cell_m: float
+    trajectory: Trajectory, smoothed: Smoothed, shown: Sequence[Stop], profile: CopyProfile, cell_m: float
 ) -> Copy:
     if profile is CopyProfile.PAPER:
-        return _copy_by_lines(sightings, shown, cell_m)
-    return _copy_by_stops(sightings, smoothed, shown, cell_m)
+        return _copy_by_lines(trajectory, shown, cell_m)
+    return _copy_by_stops(trajectory, smoothed, shown, cell_m)
 
 
-def _copy_by_stops(sightings: Sightings, smoothed: Smoothed, shown: Sequence[Rest], cell_m: float) -> Copy:
-    vertices = find_vertices(sightings, smoothed, shown, cell_m)
+def _copy_by_stops(trajectory: Trajectory, smoothed: Smoothed, shown: Sequence[Stop], cell_m: float) -> Copy:
+    vertices = find_vertices(trajectory, smoothed, shown, cell_m)
     stretches = read_moves(vertices, cell_m)
     moves = [
         CopiedMove(stretch.move, stretch.confidence) for stretch in stretches for _ in range(stretch.cells)
     ]
     corners = [vertices[0], *(vertices[stretch.vertex] for stretch in stretches)]
     covariance_m2 = smoothed.covariance[:, :2, :2]
-    smoothed_positions = Sightings(sightings.t_ns, smoothed.xy_m, covariance_m2).positions()
+    smoothed_positions = Trajectory(trajectory.t_ns, smoothed.xy_m, covariance_m2).positions()
     return Copy(tuple(moves), segments_between(corners), smoothed_positions)
 
 
-def _copy_by_lines(sightings: Sightings, shown: Sequence[Rest], cell_m: float) -> Copy:
-    within = np.zeros(len(sightings), dtype=np.bool_)
+def _copy_by_lines(trajectory: Trajectory, shown: Sequence[Stop], cell_m: float) -> Copy:
+    within = np.zeros(len(trajectory), dtype=np.bool_)
     within[max(shown[0].first, shown[0].last - REST_KEPT) : shown[-1].first + REST_KEPT + 1] = True
-    segments = fit_segments(sightings.where(within), cell_m)
+    segments = fit_segments(trajectory.where(within), cell_m)
     snapped = [snap(segment, cell_m) for segment in segments]
     moves = [CopiedMove(move, 0.0) for move, cells in snapped for _ in range(cells)]
-    return Copy(tuple(moves), segments, sightings.positions())
+    return Copy(tuple(moves), segments, trajectory.positions())
 
 
 def choose_window(moves: Sequence[Item], count: int, rng: np.random.Generator) -> tuple[Item, ...]:

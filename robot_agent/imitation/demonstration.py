@@ -18,7 +18,7 @@ BLIP_CELLS = 0.4
 
 
 @dataclass(frozen=True)
-class Rest:
+class Stop:
     """The positions `first` to `last`, both of them seen while the demonstrator stood still."""
 
     first: int
@@ -35,19 +35,19 @@ class Rest:
         return mean
 
 
-def find_rests(smoothed: Smoothed, cell_m: float) -> list[Rest]:
+def find_stops(smoothed: Smoothed, cell_m: float) -> list[Stop]:
     """Every stop in the order of time; a drive that the first or the last frame cuts has no rest there."""
-    rests: list[Rest] = []
+    stops: list[Stop] = []
     for first, last in _runs(smoothed.speed_m_s <= REST_SPEED_M_S):
-        rest = Rest(first, last)
-        if rests and _is_blip(smoothed, rests[-1], rest, cell_m):
-            rests[-1] = Rest(rests[-1].first, last)
+        stop = Stop(first, last)
+        if stops and _is_blip(smoothed, stops[-1], stop, cell_m):
+            stops[-1] = Stop(stops[-1].first, last)
         else:
-            rests.append(rest)
-    return rests
+            stops.append(stop)
+    return stops
 
 
-def _is_blip(smoothed: Smoothed, before: Rest, after: Rest, cell_m: float) -> bool:
+def _is_blip(smoothed: Smoothed, before: Stop, after: Stop, cell_m: float) -> bool:
     """Whether what looked like a drive led nowhere."""
     return math.dist(before.place_m(smoothed), after.place_m(smoothed)) < BLIP_CELLS * cell_m
 
@@ -85,30 +85,30 @@ class _Drive:
         return self.start < other.end and other.start < self.end
 
 
-def demonstration_rests(
-    smoothed: Smoothed, rests: Sequence[Rest], cell_m: float, start_m: Place | None = None
-) -> list[Rest]:
+def demonstration_stops(
+    smoothed: Smoothed, stops: Sequence[Stop], cell_m: float, start_m: Place | None = None
+) -> list[Stop]:
     """The rests of the longest demonstration: its first, those between its moves, and its last.
 
     Demonstrations are what lies before, between and after drives back. A longer rest alone does not part
     two, since a slow turn can take 1.5 s as well. Fewer than two rests mean that nothing was shown.
     """
-    drives = sorted(_drives_back(smoothed, rests, cell_m, start_m), key=lambda drive: drive.start)
+    drives = sorted(_drives_back(smoothed, stops, cell_m, start_m), key=lambda drive: drive.start)
     firsts = [0, *(drive.end for drive in drives)]
-    lasts = [*(drive.start for drive in drives), len(rests) - 1]
-    return max((list(rests[a : b + 1]) for a, b in zip(firsts, lasts, strict=True)), key=len)
+    lasts = [*(drive.start for drive in drives), len(stops) - 1]
+    return max((list(stops[a : b + 1]) for a, b in zip(firsts, lasts, strict=True)), key=len)
 
 
 def _drives_back(
-    smoothed: Smoothed, rests: Sequence[Rest], cell_m: float, start_m: Place | None
+    smoothed: Smoothed, stops: Sequence[Stop], cell_m: float, start_m: Place | None
 ) -> list[_Drive]:
     """The longest drives that look like a drive back and do not overlap."""
     standing = np.concatenate(([0], np.cumsum(smoothed.speed_m_s <= REST_SPEED_M_S)))
     chosen: list[_Drive] = []
-    for drive in sorted(_candidates(smoothed, rests), reverse=True):
-        first, after = rests[drive.start].last + 1, rests[drive.end].first
+    for drive in sorted(_candidates(smoothed, stops), reverse=True):
+        first, after = stops[drive.start].last + 1, stops[drive.end].first
         share = (standing[after] - standing[first]) / max(after - first, 1)
-        ends_at_start = _near(smoothed, rests[drive.end], start_m, cell_m)
+        ends_at_start = _near(smoothed, stops[drive.end], start_m, cell_m)
         if start_m is None or ends_at_start:
             least = LEAST_CELLS_TO_START if ends_at_start else LEAST_CELLS
             most = MOST_STANDING_TO_START if ends_at_start else MOST_STANDING
@@ -117,20 +117,20 @@ def _drives_back(
     return chosen
 
 
-def _candidates(smoothed: Smoothed, rests: Sequence[Rest]) -> list[_Drive]:
+def _candidates(smoothed: Smoothed, stops: Sequence[Stop]) -> list[_Drive]:
     """From every rest to the next ones, without a long rest in between."""
-    places_m = [rest.place_m(smoothed) for rest in rests]
+    places_m = [stop.place_m(smoothed) for stop in stops]
     drives: list[_Drive] = []
-    for start in range(len(rests)):
-        for end in range(start + 1, min(start + 2 + MOST_FALSE_STOPS, len(rests))):
+    for start in range(len(stops)):
+        for end in range(start + 1, min(start + 2 + MOST_FALSE_STOPS, len(stops))):
             drives.append(_Drive(math.dist(places_m[start], places_m[end]), start, end))
-            if rests[end].duration_s(smoothed) >= LONG_REST_S:
+            if stops[end].duration_s(smoothed) >= LONG_REST_S:
                 break
     return drives
 
 
-def _near(smoothed: Smoothed, rest: Rest, start_m: Place | None, cell_m: float) -> bool:
-    return start_m is not None and math.dist(rest.place_m(smoothed), start_m) < START_CELLS * cell_m
+def _near(smoothed: Smoothed, stop: Stop, start_m: Place | None, cell_m: float) -> bool:
+    return start_m is not None and math.dist(stop.place_m(smoothed), start_m) < START_CELLS * cell_m
 
 
 LONGEST_GAP_S = 1.05
@@ -139,22 +139,22 @@ LONGEST_GAP_FRAMES = 3.5
 """At a low frame rate a lost frame or two are no reason yet."""
 
 
-def longest_seen(smoothed: Smoothed, rests: Sequence[Rest]) -> Sequence[Rest]:
+def longest_seen(smoothed: Smoothed, stops: Sequence[Stop]) -> Sequence[Stop]:
     """The rests of the longest part of a demonstration in which the demonstrator was never lost for long.
 
     A gap within a rest ends one part there and begins the next: the demonstrator may have gone and returned.
     """
-    if not rests:
-        return rests
-    parts: list[list[Rest]] = [[rests[0]]]
+    if not stops:
+        return stops
+    parts: list[list[Stop]] = [[stops[0]]]
     lost = _long_gaps(smoothed)
-    for before, rest in zip([None, *rests[:-1]], rests, strict=True):
-        if before and lost[before.last : rest.first].any():
+    for before, stop in zip([None, *stops[:-1]], stops, strict=True):
+        if before and lost[before.last : stop.first].any():
             parts.append([])
         if before:
-            parts[-1].append(rest)
-        if lost[rest.first : rest.last].any():
-            parts.append([rest])
+            parts[-1].append(stop)
+        if lost[stop.first : stop.last].any():
+            parts.append([stop])
     return max(parts, key=len)
 
 

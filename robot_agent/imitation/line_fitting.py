@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from robot_agent.imitation.positions import Floats, Sightings
+from robot_agent.imitation.positions import Floats, Trajectory
 from robot_agent.imitation.segments import Segment, from_chord
 from swarm.geometry import MOVES, Move, wrap_angle_rad
 
@@ -48,13 +48,13 @@ class Line:
         return math.atan2(across, along)
 
 
-def fit_segments(sightings: Sightings, cell_m: float) -> tuple[Segment, ...]:
+def fit_segments(trajectory: Trajectory, cell_m: float) -> tuple[Segment, ...]:
     """Straight segments between the intersections of the fitted lines."""
-    if len(sightings) < 2:
+    if len(trajectory) < 2:
         return ()
-    ends = split(running_median(sightings.xy_m), SPLIT_CELLS * cell_m)
-    lines = merge(sightings.xy_m, [fit_line(sightings.xy_m, a, b) for a, b in pairwise(ends)])
-    return _segments(sightings, lines, _corners(sightings.xy_m, lines))
+    ends = split(running_median(trajectory.xy_m), SPLIT_CELLS * cell_m)
+    lines = merge(trajectory.xy_m, [fit_line(trajectory.xy_m, a, b) for a, b in pairwise(ends)])
+    return _segments(trajectory, lines, _corners(trajectory.xy_m, lines))
 
 
 def running_median(xy_m: Floats) -> Floats:
@@ -117,12 +117,14 @@ def _cross(a: Floats, b: Floats) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
 
 
-def _segments(sightings: Sightings, lines: Sequence[Line], corners: Sequence[Floats]) -> tuple[Segment, ...]:
+def _segments(
+    trajectory: Trajectory, lines: Sequence[Line], corners: Sequence[Floats]
+) -> tuple[Segment, ...]:
     segments: list[Segment] = []
     for line, (start, end) in zip(lines, pairwise(corners), strict=True):
         heading_rad = math.atan2(*(end - start)[::-1])
         turn_rad = wrap_angle_rad(heading_rad - segments[-1].heading_rad) if segments else 0.0
-        t_start_ns, t_end_ns = int(sightings.t_ns[line.first]), int(sightings.t_ns[line.last])
+        t_start_ns, t_end_ns = int(trajectory.t_ns[line.first]), int(trajectory.t_ns[line.last])
         segments.append(Segment(turn_rad, math.dist(start, end), heading_rad, t_start_ns, t_end_ns))
     return tuple(segments)
 

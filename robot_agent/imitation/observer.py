@@ -7,9 +7,9 @@ from collections import Counter
 from dataclasses import dataclass
 
 from robot_agent.drivers.interfaces import Camera
-from robot_agent.imitation.positions import ObservedPosition, position_from_sighting
+from robot_agent.imitation.positions import ObservedPosition, position_from_detection
 from robot_agent.navigation.pose_estimator import PoseAt
-from robot_agent.vision.detector import NotSeen, Reason, Seer, Sighting
+from robot_agent.vision.detector import Detection, Detector, NotSeen, Reason
 from robot_agent.vision.frames import Frame
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose, wrap_angle_rad
@@ -22,16 +22,16 @@ MOST_REPEATED_FRAMES = 4
 MOST_MISSING_FRAMES = 5
 PUSHED_M = 0.03
 VAGUE_M = 0.09
-"""Three quarters of a cell: a sighting whose range is less sure does not show whether a move was made."""
+"""Three quarters of a cell: a detection whose range is less sure does not show whether a move was made."""
 
 
 @dataclass(frozen=True, slots=True)
-class Looked:
-    """One frame: its hash, what the seer said of it, and the position that follows."""
+class ObservedFrame:
+    """One frame: its hash, what the detector said of it, and the position that follows."""
 
     t_ns: int
     frame_hash: int
-    answer: Sighting | NotSeen
+    answer: Detection | NotSeen
     position: ObservedPosition | None
 
 
@@ -46,16 +46,16 @@ class Watch:
     def __init__(
         self,
         camera: Camera,
-        seer: Seer,
+        detector: Detector,
         pose_at: PoseAt,
         began_ns: int,
         duration_s: float,
         frames_per_s: float,
     ) -> None:
-        self.looks: list[Looked] = []
+        self.looks: list[ObservedFrame] = []
         self.failed = ""
         self._camera = camera
-        self._seer = seer
+        self._detector = detector
         self._pose_at = pose_at
         self._ends_ns = began_ns + round(duration_s * NS_PER_S)
         self._period_ns = round(NS_PER_S / frames_per_s)
@@ -67,7 +67,7 @@ class Watch:
         self._repeated = 0
         self._missing = 0
         self.expected_frames = round(duration_s * frames_per_s)
-        seer.reset()
+        detector.reset()
 
     def ended(self, t_ns: int) -> bool:
         """Whether the time is up or the observation was given up."""
@@ -88,11 +88,17 @@ class Watch:
     @property
     def positions(self) -> list[ObservedPosition]:
         """Where the demonstrator was seen, in order of time; half hidden and far away it was not."""
-        return [looked.position for looked in self.looks if looked.position and not _is_vague(looked.answer)]
+        return [
+            observed.position
+            for observed in self.looks
+            if observed.position and not _is_vague(observed.answer)
+        ]
 
     def commonest_reason(self) -> str:
         """Why the demonstrator was most often not seen; empty if it always was."""
-        counts = Counter(looked.answer.reason for looked in self.looks if isinstance(looked.answer, NotSeen))
+        counts = Counter(
+            observed.answer.reason for observed in self.looks if isinstance(observed.answer, NotSeen)
+        )
         return counts.most_common(1)[0][0].value if counts else ""
 
     def _take(self, frame: Frame | None) -> None:
@@ -114,14 +120,14 @@ class Watch:
         """A frame comes late: what it shows is put where the robot was when it was exposed."""
         from_rad, self._looked_from_rad = self._looked_from_rad, own_pose.theta_rad
         turned_rad = None if from_rad is None else wrap_angle_rad(own_pose.theta_rad - from_rad)
-        answer = self._seer.look(frame, turned_rad)
+        answer = self._detector.look(frame, turned_rad)
         self._towards_rad = self._search.towards_rad(answer, own_pose.theta_rad, self._towards_rad)
         position = None
-        if isinstance(answer, Sighting):
-            model = self._seer.model
+        if isinstance(answer, Detection):
+            model = self._detector.model
             bearing_rad = answer.bearing_rad + model.yaw_rad
             self._towards_rad = wrap_angle_rad(own_pose.theta_rad + bearing_rad)
-            position = position_from_sighting(
+            position = position_from_detection(
                 own_pose,
                 model.forward_m,
                 answer.range_m,
@@ -130,7 +136,7 @@ class Watch:
                 answer.bearing_sd_rad,
                 frame.t_ns,
             )
-        self.looks.append(Looked(frame.t_ns, frame_hash, answer, position))
+        self.looks.append(ObservedFrame(frame.t_ns, frame_hash, answer, position))
 
     def _turn_rad_per_s(self, own_pose: Pose) -> float:
         if self._towards_rad is None or self.failed:
@@ -142,8 +148,8 @@ class Watch:
         return max(-FASTEST_TURN_RAD_PER_S, min(FASTEST_TURN_RAD_PER_S, wanted))
 
 
-def _is_vague(answer: Sighting | NotSeen) -> bool:
-    return isinstance(answer, Sighting) and answer.cut_off and answer.range_sd_m > VAGUE_M
+def _is_vague(answer: Detection | NotSeen) -> bool:
+    return isinstance(answer, Detection) and answer.cut_off and answer.range_sd_m > VAGUE_M
 
 
 SEARCH_AFTER_NS = NS_PER_S
@@ -167,12 +173,12 @@ class Search:
         self._sweeping = False
 
     def towards_rad(
-        self, answer: Sighting | NotSeen, own_theta_rad: float, towards_rad: float | None
+        self, answer: Detection | NotSeen, own_theta_rad: float, towards_rad: float | None
     ) -> float | None:
         """The heading to turn to after a frame: as it was, unless the demonstrator has been lost for long."""
         if self._middle_rad is None:
             self._middle_rad = own_theta_rad
-        if isinstance(answer, Sighting):
+        if isinstance(answer, Detection):
             self._seen_ns, self._sweeping = answer.t_ns, False
             return towards_rad
         if answer.reason not in OUT_OF_IMAGE or answer.t_ns - self._seen_ns < SEARCH_AFTER_NS:

@@ -28,7 +28,7 @@ class ObservedPosition:
     covariance: Covariance
 
 
-def position_from_sighting(
+def position_from_detection(
     own_pose: Pose,
     camera_forward_m: float,
     range_m: float,
@@ -73,7 +73,7 @@ LEAST_SD_M = 1e-4
 
 
 @dataclass(frozen=True)
-class Sightings:
+class Trajectory:
     """N positions in the order of time."""
 
     t_ns: NDArray[np.int64]  # [N]
@@ -88,8 +88,8 @@ class Sightings:
     def __len__(self) -> int:
         return len(self.t_ns)
 
-    def where(self, chosen: NDArray[np.bool_]) -> Sightings:
-        return Sightings(self.t_ns[chosen], self.xy_m[chosen], self.covariance_m2[chosen])
+    def where(self, chosen: NDArray[np.bool_]) -> Trajectory:
+        return Trajectory(self.t_ns[chosen], self.xy_m[chosen], self.covariance_m2[chosen])
 
     def positions(self) -> tuple[ObservedPosition, ...]:
         rows = zip(self.t_ns.tolist(), self.xy_m.tolist(), self.covariance_m2.tolist(), strict=True)
@@ -98,17 +98,17 @@ class Sightings:
         )
 
 
-def plausible_sightings(positions: Sequence[ObservedPosition]) -> Sightings:
+def plausible_trajectory(positions: Sequence[ObservedPosition]) -> Trajectory:
     """Sort by time; drop NaN, far away places, bad covariances, and a second position at the same time."""
-    every = Sightings(
+    every = Trajectory(
         np.array([position.t_ns for position in positions], dtype=np.int64),
         np.array([(p.x_m, p.y_m) for p in positions], dtype=np.float64).reshape(-1, 2),
         np.array([p.covariance for p in positions], dtype=np.float64).reshape(-1, 2, 2),
     )
     sound = every.where(_sound_places(every.xy_m) & _sound_covariances(every.covariance_m2))
     _, first = np.unique(sound.t_ns, return_index=True)
-    kept = Sightings(sound.t_ns[first], sound.xy_m[first], sound.covariance_m2[first])
-    return Sightings(kept.t_ns, kept.xy_m, kept.covariance_m2 + LEAST_SD_M**2 * np.eye(2))
+    kept = Trajectory(sound.t_ns[first], sound.xy_m[first], sound.covariance_m2[first])
+    return Trajectory(kept.t_ns, kept.xy_m, kept.covariance_m2 + LEAST_SD_M**2 * np.eye(2))
 
 
 def _sound_places(xy_m: Floats) -> NDArray[np.bool_]:
@@ -131,14 +131,14 @@ ROBOT_SPEED_M_S = 0.13
 """What a robot can really have moved from the median's time; the e-puck's wheels allow no more."""
 
 
-def inliers(sightings: Sightings) -> NDArray[np.bool_]:
+def inliers(trajectory: Trajectory) -> NDArray[np.bool_]:
     """Which positions lie within the gate around the median of the five positions around them."""
-    if len(sightings) < 3:
-        return np.ones(len(sightings), dtype=np.bool_)
-    medians_m, spans_s = _medians(sightings)
+    if len(trajectory) < 3:
+        return np.ones(len(trajectory), dtype=np.bool_)
+    medians_m, spans_s = _medians(trajectory)
     moved_m2 = (ROBOT_SPEED_M_S * spans_s) ** 2
-    covariance_m2 = sightings.covariance_m2 + moved_m2[:, None, None] * np.eye(2)
-    distances = chi2(sightings.xy_m - medians_m, covariance_m2)
+    covariance_m2 = trajectory.covariance_m2 + moved_m2[:, None, None] * np.eye(2)
+    distances = chi2(trajectory.xy_m - medians_m, covariance_m2)
     inside: NDArray[np.bool_] = distances <= CHI2_GATE
     return inside
 
@@ -151,10 +151,10 @@ def chi2(difference_m: Floats, covariance_m2: Floats) -> Floats:
     return result
 
 
-def _medians(sightings: Sightings) -> tuple[Floats, Floats]:
+def _medians(trajectory: Trajectory) -> tuple[Floats, Floats]:
     """Of the window around each position: the median place and half the time it spans."""
     half = WINDOW // 2
-    first = np.clip(np.arange(len(sightings)) - half, 0, max(len(sightings) - WINDOW, 0))
-    window = np.minimum(first[:, None] + np.arange(WINDOW), len(sightings) - 1)
-    t_s = sightings.t_s[window]
-    return np.median(sightings.xy_m[window], axis=1), (t_s[:, -1] - t_s[:, 0]) / 2
+    first = np.clip(np.arange(len(trajectory)) - half, 0, max(len(trajectory) - WINDOW, 0))
+    window = np.minimum(first[:, None] + np.arange(WINDOW), len(trajectory) - 1)
+    t_s = trajectory.t_s[window]
+    return np.median(trajectory.xy_m[window], axis=1), (t_s[:, -1] - t_s[:, 0]) / 2

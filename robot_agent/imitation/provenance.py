@@ -1,11 +1,11 @@
-"""The ledger: every copied path carries its provenance, frame by frame, into the log."""
+"""Provenance: every copied path carries its provenance, frame by frame, into the log."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from robot_agent.imitation.copying import Copy, NoCopy
-from robot_agent.imitation.observer import Looked, Watch
+from robot_agent.imitation.observer import ObservedFrame, Watch
 from robot_agent.vision.detector import NotSeen
 from swarm.messages import swarm_pb2 as pb
 
@@ -13,12 +13,12 @@ from swarm.messages import swarm_pb2 as pb
 def observation_message(
     visit: int, profile: str, watch: Watch, copied: Copy | NoCopy, window: Sequence[int]
 ) -> pb.Observation:
-    """Frames, sightings, smoothed positions, segments and moves of one visit; or why there are none."""
+    """Frames, detections, smoothed positions, segments and moves of one visit; or why there are none."""
     message = pb.Observation(
         visit=visit,
         profile=profile,
         frames=watch.expected_frames,
-        looks=[_look(looked) for looked in watch.looks],
+        looks=[_look(observed) for observed in watch.looks],
     )
     if isinstance(copied, NoCopy):
         message.reason = copied.reason
@@ -39,12 +39,12 @@ def observation_message(
     return message
 
 
-def _look(looked: Looked) -> pb.Look:
-    look = pb.Look(captured_t_ns=looked.t_ns, frame_hash=looked.frame_hash)
-    if isinstance(looked.answer, NotSeen):
-        look.not_seen = looked.answer.reason.value
+def _look(observed: ObservedFrame) -> pb.Look:
+    look = pb.Look(captured_t_ns=observed.t_ns, frame_hash=observed.frame_hash)
+    if isinstance(observed.answer, NotSeen):
+        look.not_seen = observed.answer.reason.value
         return look
-    look.range_m, look.bearing_rad = looked.answer.range_m, looked.answer.bearing_rad
-    if looked.position:
-        look.x_m, look.y_m = looked.position.x_m, looked.position.y_m
+    look.range_m, look.bearing_rad = observed.answer.range_m, observed.answer.bearing_rad
+    if observed.position:
+        look.x_m, look.y_m = observed.position.x_m, observed.position.y_m
     return look

@@ -9,13 +9,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from robot_agent.imitation.demonstration import Rest
-from robot_agent.imitation.positions import Floats, Sightings, chi2
+from robot_agent.imitation.demonstration import Stop
+from robot_agent.imitation.positions import Floats, Trajectory, chi2
 from robot_agent.imitation.smoothing import Smoothed
 from swarm.geometry import wrap_angle_rad
 
 FROZEN_SHARE = 0.5
-"""Share of a sighting's variance that stays the same while the robot stands still, so that a smoothed
+"""Share of a detection's variance that stays the same while the robot stands still, so that a smoothed
 position never becomes better than this."""
 BEND_CHI2 = 16.0
 """A drive bends where it leaves its chord by this much, ..."""
@@ -50,41 +50,41 @@ class Vertex:
 
 
 def find_vertices(
-    sightings: Sightings, smoothed: Smoothed, rests: Sequence[Rest], cell_m: float
+    trajectory: Trajectory, smoothed: Smoothed, stops: Sequence[Stop], cell_m: float
 ) -> list[Vertex]:
     """The rests, and between them the bends of drives whose stop was too short to be seen."""
-    vertices = [_vertex(sightings, smoothed, rest) for rest in rests[:1]]
-    for before, after in pairwise(rests):
-        bends = _bends(sightings, smoothed, before.last, after.first, BEND_CELLS * cell_m)
-        vertices += [_bend_vertex(sightings, smoothed, bend) for bend in bends]
-        vertices.append(_vertex(sightings, smoothed, after))
+    vertices = [_vertex(trajectory, smoothed, stop) for stop in stops[:1]]
+    for before, after in pairwise(stops):
+        bends = _bends(trajectory, smoothed, before.last, after.first, BEND_CELLS * cell_m)
+        vertices += [_bend_vertex(trajectory, smoothed, bend) for bend in bends]
+        vertices.append(_vertex(trajectory, smoothed, after))
     return vertices
 
 
-def _vertex(sightings: Sightings, smoothed: Smoothed, rest: Rest) -> Vertex:
-    seen = slice(rest.first, rest.last + 1)
-    middle = (rest.first + rest.last + 1) // 2
-    frozen_m2 = FROZEN_SHARE * sightings.covariance_m2[seen].mean(axis=0)
+def _vertex(trajectory: Trajectory, smoothed: Smoothed, stop: Stop) -> Vertex:
+    seen = slice(stop.first, stop.last + 1)
+    middle = (stop.first + stop.last + 1) // 2
+    frozen_m2 = FROZEN_SHARE * trajectory.covariance_m2[seen].mean(axis=0)
     return Vertex(
-        rest.place_m(smoothed),
+        stop.place_m(smoothed),
         smoothed.covariance[middle, :2, :2] + frozen_m2,
-        int(sightings.t_ns[rest.first]),
-        int(sightings.t_ns[rest.last]),
+        int(trajectory.t_ns[stop.first]),
+        int(trajectory.t_ns[stop.last]),
     )
 
 
-def _bend_vertex(sightings: Sightings, smoothed: Smoothed, bend: int) -> Vertex:
-    covariance_m2 = smoothed.covariance[bend, :2, :2] + FROZEN_SHARE * sightings.covariance_m2[bend]
-    t_ns = int(sightings.t_ns[bend])
+def _bend_vertex(trajectory: Trajectory, smoothed: Smoothed, bend: int) -> Vertex:
+    covariance_m2 = smoothed.covariance[bend, :2, :2] + FROZEN_SHARE * trajectory.covariance_m2[bend]
+    t_ns = int(trajectory.t_ns[bend])
     return Vertex(smoothed.xy_m[bend], covariance_m2, t_ns, t_ns, stopped=False)
 
 
-def _bends(sightings: Sightings, smoothed: Smoothed, start: int, end: int, least_m: float) -> list[int]:
+def _bends(trajectory: Trajectory, smoothed: Smoothed, start: int, end: int, least_m: float) -> list[int]:
     """Split a drive at its farthest place from the chord, again and again (Ramer, 1972; Douglas and Peucker,
     1973), with the distance measured in units of its own error."""
     corners, waiting = [start], [end]
     while waiting:
-        bend = _farthest(sightings, smoothed, corners[-1], waiting[-1])
+        bend = _farthest(trajectory, smoothed, corners[-1], waiting[-1])
         if bend is None or not _parted(smoothed.xy_m[[corners[-1], bend, waiting[-1]]], least_m):
             corners.append(waiting.pop())
         else:
@@ -92,12 +92,12 @@ def _bends(sightings: Sightings, smoothed: Smoothed, start: int, end: int, least
     return corners[1:-1]
 
 
-def _farthest(sightings: Sightings, smoothed: Smoothed, start: int, end: int) -> int | None:
+def _farthest(trajectory: Trajectory, smoothed: Smoothed, start: int, end: int) -> int | None:
     """The place between two others that is farthest from their chord; None if they are on it."""
     inner = slice(start + 1, end)
     if end - start < 2:
         return None
-    frozen_m2 = FROZEN_SHARE * sightings.covariance_m2[inner]
+    frozen_m2 = FROZEN_SHARE * trajectory.covariance_m2[inner]
     away_m = from_chord(smoothed.xy_m[inner], smoothed.xy_m[start], smoothed.xy_m[end])
     distances = chi2(away_m, smoothed.covariance[inner, :2, :2] + frozen_m2)
     farthest = int(np.argmax(distances))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot_agent.imitation.positions import Floats, Sightings
+from robot_agent.imitation.positions import Floats, Trajectory
 
 ACCELERATION_NOISE_M2_S3 = 0.025
 """q: 250 cm^2/s^3 follows a robot that starts and stops within a quarter of a second."""
@@ -23,7 +23,7 @@ _SEEN = np.eye(2, 4)
 
 @dataclass(frozen=True)
 class Smoothed:
-    """State estimates at the times of the N sightings."""
+    """State estimates at the times of the N detections."""
 
     t_s: Floats  # [N]
     xy_m: Floats  # [N, 2]
@@ -35,37 +35,37 @@ class Smoothed:
         return np.hypot(self.velocity_m_s[:, 0], self.velocity_m_s[:, 1])
 
 
-def smooth(sightings: Sightings) -> Smoothed:
-    """At least one sighting, in the order of time."""
-    t_s = sightings.t_s
+def smooth(trajectory: Trajectory) -> Smoothed:
+    """At least one detection, in the order of time."""
+    t_s = trajectory.t_s
     steps = [(_transition(dt_s), _process_noise(dt_s)) for dt_s in np.diff(t_s)]
-    states, covariances, predictions = _filter(sightings, steps)
+    states, covariances, predictions = _filter(trajectory, steps)
     _smooth_backwards(states, covariances, predictions, steps)
     return Smoothed(t_s, states[:, :2], states[:, 2:], covariances)
 
 
 Step = tuple[Floats, Floats]
-"""The transition and the process noise from one sighting to the next."""
+"""The transition and the process noise from one detection to the next."""
 
 
-def _filter(sightings: Sightings, steps: list[Step]) -> tuple[Floats, Floats, list[Step]]:
+def _filter(trajectory: Trajectory, steps: list[Step]) -> tuple[Floats, Floats, list[Step]]:
     """Filtered states [N, 4] and covariances [N, 4, 4], and what was predicted after each step."""
-    states, covariances = np.zeros((len(sightings), 4)), np.zeros((len(sightings), 4, 4))
-    states[0, :2] = sightings.xy_m[0]
+    states, covariances = np.zeros((len(trajectory), 4)), np.zeros((len(trajectory), 4, 4))
+    states[0, :2] = trajectory.xy_m[0]
     covariances[0] = np.diag([0.0, 0.0, FIRST_SPEED_SD_M_S**2, FIRST_SPEED_SD_M_S**2])
-    covariances[0, :2, :2] = sightings.covariance_m2[0]
+    covariances[0, :2, :2] = trajectory.covariance_m2[0]
     predictions = []
     for i, (transition, noise) in enumerate(steps):
         state = transition @ states[i]
         covariance = transition @ covariances[i] @ transition.T + noise
         predictions.append((state, covariance))
-        seen_m, seen_m2 = sightings.xy_m[i + 1], sightings.covariance_m2[i + 1]
+        seen_m, seen_m2 = trajectory.xy_m[i + 1], trajectory.covariance_m2[i + 1]
         states[i + 1], covariances[i + 1] = _update(state, covariance, seen_m, seen_m2)
     return states, covariances, predictions
 
 
 def _update(state: Floats, covariance: Floats, seen_m: Floats, seen_m2: Floats) -> Step:
-    """The Kalman update, or the prediction itself if the sighting is outside the gate."""
+    """The Kalman update, or the prediction itself if the detection is outside the gate."""
     innovation = seen_m - state[:2]
     weight = _inverse(covariance[:2, :2] + seen_m2)
     if innovation @ weight @ innovation > CHI2_GATE:

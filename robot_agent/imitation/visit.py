@@ -14,7 +14,7 @@ from robot_agent.imitation.observer import Watch
 from robot_agent.imitation.provenance import observation_message
 from robot_agent.navigation.pose_estimator import PoseAt
 from robot_agent.policies.policy import Publish
-from robot_agent.vision.detector import Seer
+from robot_agent.vision.detector import Detector
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import VisitSettings
 from swarm.geometry import Pose
@@ -32,10 +32,10 @@ STANDS_FOR_NS = NS_PER_S
 
 @dataclass(frozen=True)
 class Eyes:
-    """What a robot needs to watch: a camera, a seer trained on the demonstrator's skirt, and a memory."""
+    """What a robot needs to watch: a camera, a detector trained on the demonstrator's skirt, and a memory."""
 
     camera: Camera
-    seer: Seer
+    detector: Detector
     pose_at: PoseAt
     settings: VisitSettings
     cell_m: float
@@ -90,7 +90,7 @@ class Visit:
         self._say(pb.Visit.WATCHING)
         eyes = self._eyes
         duration_s, frames_per_s = eyes.settings.duration_s, eyes.settings.frames_per_s
-        return Watch(eyes.camera, eyes.seer, eyes.pose_at, t_ns, duration_s, frames_per_s)
+        return Watch(eyes.camera, eyes.detector, eyes.pose_at, t_ns, duration_s, frames_per_s)
 
     def _finish(self, watch: Watch) -> None:
         copied = self._copied(watch)

@@ -29,8 +29,8 @@ class HeadingSettings:
 class HeadingFilter:
     """Covariance and gains of (heading, left scale, right scale); the state itself lives in the odometry."""
 
-    def __init__(self, settings: HeadingSettings, track_m: float) -> None:
-        self._track_m = track_m
+    def __init__(self, settings: HeadingSettings, wheel_base_m: float) -> None:
+        self._track_m = wheel_base_m
         self._tracker_variance = settings.tracker_sd_rad**2
         self._slip_variance_per_m = settings.slip_sd_rad_per_sqrt_m**2
         self._scale_variance_per_m = settings.scale_drift_sd_per_sqrt_m**2

@@ -29,7 +29,7 @@ class Odometry:
     def __init__(self, geometry: EpuckGeometry, memory_s: float) -> None:
         self.left_scale = 1.0
         self.right_scale = 1.0
-        self._step_m, self._track_m = geometry.step_m, geometry.track_m
+        self._step_m, self._track_m = geometry.step_m, geometry.wheel_base_m
         self._memory_ns = round(memory_s * 1e9)
         self._steps: WheelSteps | None = None
         self._states: deque[Reckoned] = deque()

@@ -84,7 +84,7 @@ class PoseEstimator:
         """Fixes agree that the robot is elsewhere: it was carried by hand. Stays true until `reset`."""
         self._settings = settings or FusionSettings()
         self._odometry = Odometry(geometry, self._settings.memory_s)
-        self._heading = HeadingFilter(self._settings.heading, geometry.track_m)
+        self._heading = HeadingFilter(self._settings.heading, geometry.wheel_base_m)
         self._tracker_variance = self._settings.tracker_sd_m**2
         self._smallest_variance = self._settings.smallest_sd_m**2
         self._drift_variance_per_m = self._settings.drift_sd_m_per_sqrt_m**2

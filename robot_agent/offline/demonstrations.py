@@ -92,7 +92,7 @@ def demonstrate(
     walls = experiment.compartment(experiment.robot[0])
     heading_rad = Move(int(rng.integers(len(Move)))).theta_rad
     driver = _Driver(experiment, Pose(*walls.centre(start), heading_rad), walls, rng)
-    driver.rest(rng.uniform(*FIRST_REST_S))
+    driver.stop(rng.uniform(*FIRST_REST_S))
     state, middles = start, []
     for move in moves:
         entered = walls.grid.neighbour(state, move)
@@ -102,7 +102,7 @@ def demonstrate(
         driver.go_to(*walls.centre(entered))
         middles.append((began + len(driver.track)) / 2)
         state = entered
-    driver.rest(rng.uniform(*REST_S))
+    driver.stop(rng.uniform(*REST_S))
     return Demonstration(start, tuple(moves), tuple(driver.track), tuple(middles))
 
 
@@ -115,7 +115,7 @@ class _Driver:
         self._robot = TrackedRobot(experiment, pose, walls, rng)
         self._motion = Motion(MotionSettings(period_s=self._tick_s), EpuckGeometry())
 
-    def rest(self, duration_s: float) -> None:
+    def stop(self, duration_s: float) -> None:
         for _ in range(round(duration_s / self._tick_s)):
             self._tick()
 

@@ -12,7 +12,7 @@ from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry
 from robot_agent.drivers.sim.camera import BUILT_IN_MODEL, CALIBRATION_RANGES_M
 from robot_agent.drivers.sim.rendering.camera import SceneCamera, SimulatedCamera, calibration_frames
 from robot_agent.drivers.sim.rendering.conditions import conditions
-from robot_agent.drivers.sim.rendering.scene import Body, Rectangle, Scene
+from robot_agent.drivers.sim.rendering.scene import Rectangle, Scene, SceneRobot
 from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, copy_moves
 from robot_agent.imitation.observer import Watch
 from robot_agent.offline.demonstrations import (
@@ -23,7 +23,7 @@ from robot_agent.offline.demonstrations import (
     random_moves,
 )
 from robot_agent.vision.colour_calibration import learn_colour_table
-from robot_agent.vision.detector import PROFILES, Seer
+from robot_agent.vision.detector import PROFILES, Detector
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment, RobotSettings, Role, RunSettings, Watching
 from swarm.geometry import Grid, Move, Pose, wrap_angle_rad
@@ -33,7 +33,7 @@ SETTLE_TICKS = 20
 """The observer stands for so long before it watches, as in a run, and knows its heading by then."""
 
 
-def rehearsal_experiment(profile: Watching = Watching.BEST, light: str = "realistic") -> Experiment:
+def offline_experiment(profile: Watching = Watching.BEST, light: str = "realistic") -> Experiment:
     """Two robots in compartments of the paper's size; the second watches the first."""
     demonstrator = RobotSettings("demonstrator", (0.0, 0.0), role=Role.EXPERT)
     observer = RobotSettings("observer", (1.5, 0.0), watches="demonstrator")
@@ -50,7 +50,7 @@ class Watcher(Protocol):
 
 
 @dataclass(frozen=True)
-class Rehearsed:
+class ObservedDemonstration:
     """A demonstration and what the observer made of it."""
 
     demonstration: Demonstration
@@ -77,7 +77,7 @@ class Rehearsed:
 
 
 class Stage:
-    """The observer's place, its body, camera and seer."""
+    """The observer's place, its body, camera and detector."""
 
     def __init__(self, experiment: Experiment, rng: np.random.Generator) -> None:
         self._experiment = experiment
@@ -93,7 +93,7 @@ class Stage:
         model = BUILT_IN_MODEL.scaled(profile.width, profile.height)
         light = SimulatedCamera(model, conditions(experiment.camera.conditions), camera_rng)
         frames = calibration_frames(light, self._skirt, CALIBRATION_RANGES_M)
-        self.seer = Seer(
+        self.detector = Detector(
             experiment.visits.profile.value, model, learn_colour_table(frames, model, self._skirt)
         )
         self.camera = SceneCamera(light, self.look)
@@ -102,18 +102,18 @@ class Stage:
         self._began_ns = 0
         self._own_before_rad: float | None = None
 
-    def watch(self, demonstration: Demonstration) -> Rehearsed:
+    def watch(self, demonstration: Demonstration) -> ObservedDemonstration:
         """See the whole demonstration, and copy it."""
         self.shown = self.scenes(demonstration)
         visits = self._experiment.visits
         began_ns = self.settle()
         duration_s = len(demonstration.track) * self._experiment.simulation.tick_s
         pose_at = self.robot.pose_at
-        watch = Watch(self.camera, self.seer, pose_at, began_ns, duration_s, visits.frames_per_s)
+        watch = Watch(self.camera, self.detector, pose_at, began_ns, duration_s, visits.frames_per_s)
         self.run(watch, began_ns, len(demonstration.track))
         profile, cell_m = CopyProfile(visits.profile.value), self._experiment.arena.cell_m
         copied = copy_moves(watch.positions, profile, cell_m, watch.expected_frames)
-        return Rehearsed(demonstration, watch, copied, began_ns, self._tick_ns)
+        return ObservedDemonstration(demonstration, watch, copied, began_ns, self._tick_ns)
 
     def scenes(self, demonstration: Demonstration) -> Callable[[int], Scene]:
         """The compartment and the demonstrator at each tick, with the velocity that blurs its image."""
@@ -123,7 +123,7 @@ class Stage:
             now = track[min(tick, len(track) - 1)]
             before = track[min(max(tick - 1, 0), len(track) - 1)]
             velocity_m_s = ((now.x_m - before.x_m) / tick_s, (now.y_m - before.y_m) / tick_s)
-            return Scene((self.room,), (Body(now, self._skirt, velocity_m_s),))
+            return Scene((self.room,), (SceneRobot(now, self._skirt, velocity_m_s),))
 
         return scene
 
@@ -160,7 +160,9 @@ KINDS: dict[str, ChooseMoves] = {"random": random_moves, "expert": expert_moves}
 """random: any moves that stay in the grid; expert: a part of the shortest path."""
 
 
-def rehearse(experiment: Experiment, kind: str, number: int, seed: int) -> Rehearsed:
+def observed_demonstration(
+    experiment: Experiment, kind: str, number: int, seed: int
+) -> ObservedDemonstration:
     """Show, watch and copy the demonstration of this number, of as many moves as robots remember."""
     rng = spawned_generator(seed, kind, number, "demonstrator", "rehearsal")
     grid = experiment.compartment(experiment.robot[0]).grid
@@ -168,7 +170,9 @@ def rehearse(experiment: Experiment, kind: str, number: int, seed: int) -> Rehea
     return Stage(experiment, rng).watch(demonstrate(experiment, start, moves, rng))
 
 
-def rehearsals(experiment: Experiment, kind: str, count: int, seed: int) -> Iterator[Rehearsed]:
+def observed_demonstrations(
+    experiment: Experiment, kind: str, count: int, seed: int
+) -> Iterator[ObservedDemonstration]:
     """So many demonstrations of one kind."""
     for number in range(count):
-        yield rehearse(experiment, kind, number, seed)
+        yield observed_demonstration(experiment, kind, number, seed)

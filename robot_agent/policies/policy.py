@@ -26,7 +26,7 @@ class Transition:
     blocked: bool
 
 
-class Brain(Protocol):
+class Policy(Protocol):
     """Chooses moves in cells and learns on arrival."""
 
     moves: int

@@ -24,7 +24,7 @@ class Place:
     range_sd_m: float
 
 
-class Gate:
+class Association:
     """Remembers the last place for ten seconds; then the robot can be anywhere."""
 
     def __init__(self) -> None:

@@ -12,7 +12,7 @@ from enum import Enum
 
 import numpy as np
 
-from robot_agent.vision.association import Gate, Place
+from robot_agent.vision.association import Association, Place
 from robot_agent.vision.blobs import Blob, blobs_at_horizon
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.colour_table import SKIRT, ColourTable
@@ -48,7 +48,7 @@ DARK_LIGHT = 0.03
 
 
 class Reason(Enum):
-    """Why a frame gives no sighting."""
+    """Why a frame gives no detection."""
 
     NOT_SEEN = "nothing of the skirt's colour at the horizon"
     UNLIKE = "nothing of the skirt's colour has the shape of a skirt"
@@ -60,7 +60,7 @@ class Reason(Enum):
 
 
 @dataclass(frozen=True)
-class Sighting:
+class Detection:
     """The demonstrator's axis, seen from the camera; bearings are counter-clockwise from the camera's axis.
 
     `cut_off`: one side is outside the image or not against the wall (its column is then None), so the range
@@ -113,7 +113,7 @@ PROFILES = {
 }
 
 
-class Seer:
+class Detector:
     """Looks for one skirt in the frames of one camera, one frame after the other.
 
     `profile` is "best" (320 x 240, edges to a fraction of a pixel) or "paper" (160 x 120, sides from the
@@ -128,14 +128,14 @@ class Seer:
         self._is_skirt = (table.kinds == SKIRT).astype(np.uint8)
         self._finder = EdgeFinder(self.model, table)
         self._tolerance_px = self.profile.tolerance_px
-        self._gate = Gate()
+        self._association = Association()
         self._edge_sd_rad = self.profile.edge_sd_px / self.model.focal_px
 
     def reset(self) -> None:
         """Forget where the demonstrator was: a new observation begins."""
-        self._gate.forget()
+        self._association.forget()
 
-    def look(self, frame: Frame, turned_rad: float | None = None) -> Sighting | NotSeen:
+    def look(self, frame: Frame, turned_rad: float | None = None) -> Detection | NotSeen:
         """What the frame shows of the demonstrator.
 
         `turned_rad`: how far the camera turned (counter-clockwise) since the frame before, which narrows
@@ -143,14 +143,14 @@ class Seer:
         the profile's.
         """
         self._check_size(frame)
-        self._gate.turn(turned_rad)
+        self._association.turn(turned_rad)
         words = frame_words(frame)
         wall_light = self._finder.wall_light(words)
         if wall_light < DARK_LIGHT:
             return NotSeen(frame.t_ns, Reason.DARK)
         answer = self._choose(frame.t_ns, self._candidates(frame.t_ns, words, wall_light))
-        if isinstance(answer, Sighting):
-            self._gate.keep(_place(answer))
+        if isinstance(answer, Detection):
+            self._association.keep(_place(answer))
             return answer
         return NotSeen(frame.t_ns, answer)
 
@@ -161,13 +161,13 @@ class Seer:
                 f"{self.profile.width} x {self.profile.height}: set the camera to that size"
             )
 
-    def _candidates(self, t_ns: int, words: Words, wall_light: float) -> list[Sighting | Reason]:
+    def _candidates(self, t_ns: int, words: Words, wall_light: float) -> list[Detection | Reason]:
         """An answer for each patch of the skirt's colour, the largest first."""
         mask = self._is_skirt.take(words, mode="clip")
         blobs = blobs_at_horizon(mask, self.model.horizon_row, TILT_RAD * self.model.focal_px)
         return [self._measure(t_ns, words, blob, wall_light) for blob in blobs[:MAX_CANDIDATES]]
 
-    def _measure(self, t_ns: int, words: Words, blob: Blob, wall_light: float) -> Sighting | Reason:
+    def _measure(self, t_ns: int, words: Words, blob: Blob, wall_light: float) -> Detection | Reason:
         if not (blob.is_filled and self._finder.has_body_above(words, blob, wall_light)):
             return Reason.UNLIKE
         left_cut, right_cut = blob.left < BORDER_PX, blob.right > self.model.width - BORDER_PX
@@ -196,7 +196,7 @@ class Seer:
         edges = self._finder.find(words, blob)
         return edges.left, edges.right
 
-    def _from_both_edges(self, t_ns: int, blob: Blob, left: float, right: float) -> Sighting | Reason:
+    def _from_both_edges(self, t_ns: int, blob: Blob, left: float, right: float) -> Detection | Reason:
         if right - left < MIN_WIDTH_PX:
             return Reason.UNLIKE
         left_rad, right_rad = self.model.bearing_rad(left), self.model.bearing_rad(right)
@@ -204,9 +204,9 @@ class Seer:
         if not fits_skirt(blob, self.model, range_m, bearing_rad, self._tolerance_px):
             return Reason.UNLIKE
         spread = covariance(range_m, self._edge_sd_rad, MOUNTING_SD_RAD)
-        return Sighting(t_ns, range_m, bearing_rad, spread, left, right)
+        return Detection(t_ns, range_m, bearing_rad, spread, left, right)
 
-    def _from_one_edge(self, t_ns: int, blob: Blob, left: float | None, right: float | None) -> Sighting:
+    def _from_one_edge(self, t_ns: int, blob: Blob, left: float | None, right: float | None) -> Detection:
         """The range from the height of the patch, the bearing from the side that is seen."""
         middle_rad = self.model.bearing_rad((blob.left + blob.right - 1) / 2)
         range_m = depth_from_height_m(blob, self.model) / math.cos(middle_rad) + SKIRT_RADIUS_M
@@ -215,24 +215,24 @@ class Seer:
         assert edge is not None
         bearing_rad = self.model.bearing_rad(edge) - side * half_angle_rad(range_m)
         spread = covariance_of_one_edge(range_m, range_sd_m, self._edge_sd_rad, MOUNTING_SD_RAD, side)
-        return Sighting(t_ns, range_m, bearing_rad, spread, left, right, cut_off=True)
+        return Detection(t_ns, range_m, bearing_rad, spread, left, right, cut_off=True)
 
-    def _choose(self, t_ns: int, candidates: list[Sighting | Reason]) -> Sighting | Reason:
-        seen = [candidate for candidate in candidates if isinstance(candidate, Sighting)]
+    def _choose(self, t_ns: int, candidates: list[Detection | Reason]) -> Detection | Reason:
+        seen = [candidate for candidate in candidates if isinstance(candidate, Detection)]
         if not seen:
             return next(
                 (candidate for candidate in candidates if isinstance(candidate, Reason)), Reason.NOT_SEEN
             )
-        ranked = sorted((self._gate.strain(_place(sighting)), i) for i, sighting in enumerate(seen))
+        ranked = sorted((self._association.strain(_place(detection)), i) for i, detection in enumerate(seen))
         if ranked[0][0] > 1:
             return Reason.JUMPED
         possible = [item for item in ranked if item[0] <= 1]
-        if len(possible) > 1 and not self._gate.remembers(t_ns):
+        if len(possible) > 1 and not self._association.remembers(t_ns):
             return Reason.TWO_CANDIDATES
         if len(possible) > 1 and possible[0][0] > CLEARLY_NEARER * possible[1][0]:
             return Reason.TWO_CANDIDATES
         return seen[ranked[0][1]]
 
 
-def _place(sighting: Sighting) -> Place:
-    return Place(sighting.t_ns, sighting.range_m, sighting.bearing_rad, sighting.range_sd_m)
+def _place(detection: Detection) -> Place:
+    return Place(detection.t_ns, detection.range_m, detection.bearing_rad, detection.range_sd_m)

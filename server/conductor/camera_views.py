@@ -14,7 +14,7 @@ from swarm.runtime.subscription import Received
 LEDGE_M = 0.02
 
 
-class World:
+class CameraViews:
     """Relays light, not messages: an observer receives a view under its own key, never another's pose."""
 
     def __init__(self, experiment: Experiment, publish: Publish) -> None:

@@ -15,20 +15,20 @@ from swarm.messages.topics import Topic
 Publish = Callable[[Topic[Any], Message, str], None]
 
 
-class Hand(Protocol):
+class Carrier(Protocol):
     """Carries robots."""
 
-    def carry(self, robot: str, to: Pose, why: str) -> None:
+    def relocate(self, robot: str, to: Pose, why: str) -> None:
         """Have a robot stand at a place; it confirms by its own pose that it does."""
 
 
-class SimulatedHand:
+class SimulatedCarrier:
     """Moves a simulated robot at once."""
 
     def __init__(self, publish: Publish) -> None:
         self._publish = publish
 
-    def carry(self, robot: str, to: Pose, why: str) -> None:  # noqa: ARG002
+    def relocate(self, robot: str, to: Pose, why: str) -> None:  # noqa: ARG002
         self._publish(topics.CARRY, pb.Carry(x_m=to.x_m, y_m=to.y_m, theta_rad=to.theta_rad), robot)
 
 
@@ -39,7 +39,7 @@ class Operator:
         self._publish = publish
         self._ask = ask
 
-    def carry(self, robot: str, to: Pose, why: str) -> None:
+    def relocate(self, robot: str, to: Pose, why: str) -> None:
         place = f"x {to.x_m:.2f} m, y {to.y_m:.2f} m, heading {to.theta_rad:.2f} rad"
         text = f"please carry {robot} to {place}: {why}"
         self._ask(text)

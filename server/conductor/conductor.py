@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from server.conductor.camera_views import World
-from server.conductor.carrier import Hand, Publish
+from server.conductor.camera_views import CameraViews
+from server.conductor.carrier import Carrier, Publish
 from server.conductor.copy_errors import CopyErrors
 from server.conductor.visits import Visits
 from server.hubs.hub import Batch
@@ -13,7 +13,7 @@ from swarm.errors import RunFailedError
 from swarm.geometry import Grid
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.runtime.subscription import Feed, Feeds, Received
+from swarm.runtime.subscription import Received, Subscription, Subscriptions
 
 RUN_STATE_PERIOD_NS = NS_PER_S
 STUCK_AFTER_NS = 600 * NS_PER_S
@@ -22,22 +22,22 @@ STUCK_AFTER_NS = 600 * NS_PER_S
 class Conductor:
     """Follows a trial from what is on the wire, and speaks to the robots by the same wire."""
 
-    def __init__(self, experiment: Experiment, trial: int, publish: Publish, hand: Hand) -> None:
+    def __init__(self, experiment: Experiment, trial: int, publish: Publish, carrier: Carrier) -> None:
         self._experiment = experiment
         self._trial = trial
         self._publish = publish
-        self._moves = Feed(topics.MOVE)
-        self._best_paths = Feed(topics.BEST_PATH)
-        self._paths = Feed(topics.PATH)
-        self._visit_words = Feed(topics.VISIT)
-        self._observations = Feed(topics.OBSERVATION)
-        self._truths = Feed(topics.TRUTH)
+        self._moves = Subscription(topics.MOVE)
+        self._best_paths = Subscription(topics.BEST_PATH)
+        self._paths = Subscription(topics.PATH)
+        self._visit_words = Subscription(topics.VISIT)
+        self._observations = Subscription(topics.OBSERVATION)
+        self._truths = Subscription(topics.TRUTH)
         heard = (self._moves, self._best_paths, self._paths, self._visit_words, self._observations)
-        self._feeds = Feeds(heard)
-        self._feeds_while_watching = Feeds((*heard, self._truths))
+        self._subscriptions = Subscriptions(heard)
+        self._feeds_while_watching = Subscriptions((*heard, self._truths))
         self._goal = Grid(experiment.arena.columns, experiment.arena.rows).goal
-        self._visits = Visits(experiment, publish, hand)
-        self._world = World(experiment, publish)
+        self._visits = Visits(experiment, publish, carrier)
+        self._camera_views = CameraViews(experiment, publish)
         watched_by = {robot.id: robot.watches for robot in experiment.learners if robot.watches}
         self._copy_errors = CopyErrors(watched_by, publish)
         self._state_due_ns = 0
@@ -61,7 +61,7 @@ class Conductor:
     def step(self, batch: Batch) -> None:
         """Take in a batch; announce the run's state once a second and when it changes."""
         watching = self._visits.watching
-        (self._feeds_while_watching if watching else self._feeds).put(batch.items)
+        (self._feeds_while_watching if watching else self._subscriptions).put(batch.items)
         for move in self._moves.take():
             self._note_move(move, batch.t_ns)
         for best in self._best_paths.take():
@@ -92,7 +92,7 @@ class Conductor:
                 self._copy_errors.visit_done(word.robot, word.message, t_ns)
         self._copy_errors.step(t_ns)
         self._visits.order_due(t_ns)
-        self._world.step(self._truths.take(), self._visits.watching)
+        self._camera_views.step(self._truths.take(), self._visits.watching)
 
     def check_progress(self, t_ns: int) -> None:
         """RunFailedError if no robot has moved for ten minutes of the run: a simulation waits for nobody."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from server.conductor.carrier import Hand, Publish
+from server.conductor.carrier import Carrier, Publish
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment, RobotSettings
 from swarm.geometry import Pose
@@ -35,10 +35,10 @@ class VisitRecord:
 class Visits:
     """Orders visits and has the robots carried."""
 
-    def __init__(self, experiment: Experiment, publish: Publish, hand: Hand) -> None:
+    def __init__(self, experiment: Experiment, publish: Publish, carrier: Carrier) -> None:
         self._experiment = experiment
         self._publish = publish
-        self._hand = hand
+        self._carrier = carrier
         self._records = {robot.id: VisitRecord(robot) for robot in experiment.learners if robot.watches}
         for record in self._records.values():
             record.paths = len(record.robot.paths)
@@ -66,7 +66,7 @@ class Visits:
         if visit.phase == pb.Visit.READY:
             place = self._experiment.observers_place(self._demonstrator(record))
             record.carried = True
-            self._hand.carry(robot, place, f"visit {visit.visit} to {record.robot.watches}")
+            self._carrier.relocate(robot, place, f"visit {visit.visit} to {record.robot.watches}")
         elif visit.phase == pb.Visit.DONE:
             self._send_home(record)
 
@@ -95,7 +95,7 @@ class Visits:
         record.under_way = record.carried = False
         home = self._experiment.compartment(record.robot)
         start = Pose(*home.centre(home.grid.start), 0.0)
-        self._hand.carry(record.robot.id, start, f"visit {record.begun} is over")
+        self._carrier.relocate(record.robot.id, start, f"visit {record.begun} is over")
         self._order(record, pb.Order.RUN, start)
 
     def _order_to_watch(self, record: VisitRecord, t_ns: int) -> None:

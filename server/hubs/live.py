@@ -15,7 +15,7 @@ from swarm.messages.header import Header, Item
 from swarm.messages.topics import Delivery, Topic
 from swarm.runtime.liveliness import present
 from swarm.runtime.node import Sequencer
-from swarm.runtime.zenoh_session import Bus, Sample, Sender
+from swarm.runtime.zenoh_session import Publisher, Session, WireSample
 
 M = TypeVar("M", bound=Message)
 
@@ -27,21 +27,21 @@ class LiveHub:
 
     def __init__(
         self,
-        bus: Bus,
+        session: Session,
         clock: WallClock,
         experiment: Experiment,
         check: Callable[[], None],
         warn: Callable[[str], None],
     ) -> None:
-        self._bus = bus
+        self._session = session
         self._clock = clock
         self._ticks: Iterator[int] = clock.ticks(experiment.simulation.tick_s)
         self._epoch = time.time_ns()
         self._robots = [robot.id for robot in experiment.robot]
         self._check = check
         self._warn = warn
-        self._inboxes = [bus.inbox(key, Delivery.EVERY) for key in EVERYTHING]
-        self._senders: dict[str, Sender] = {}
+        self._inboxes = [session.inbox(key, Delivery.EVERY) for key in EVERYTHING]
+        self._publishers: dict[str, Publisher] = {}
         self._sequencer = Sequencer()
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
@@ -50,7 +50,7 @@ class LiveHub:
         """Wait until every robot of the experiment is alive; name those that are missing."""
         named_s = time.monotonic()
         while missing := sorted(
-            set(self._robots) - {presence.name for presence in present(self._bus, "robot")}
+            set(self._robots) - {presence.name for presence in present(self._session, "robot")}
         ):
             self._check()
             next(self._ticks)
@@ -61,9 +61,9 @@ class LiveHub:
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         key = topic.key(robot)
         header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
-        if key not in self._senders:
-            self._senders[key] = self._bus.sender(key, topic.delivery)
-        self._senders[key].put(message.SerializeToString(), attachment=header.pack())
+        if key not in self._publishers:
+            self._publishers[key] = self._session.publisher(key, topic.delivery)
+        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
 
     def advance(self) -> None:
         """In real time the processes need no leave."""
@@ -82,7 +82,7 @@ class LiveHub:
     def finish(self) -> None:
         """The run's state ENDED has told the robots already."""
 
-    def _items(self, samples: list[Sample]) -> Iterator[Item]:
+    def _items(self, samples: list[WireSample]) -> Iterator[Item]:
         for sample in samples:
             header = Header.unpack(sample.attachment)
             if header is None or header.t_ns < 0:

@@ -18,7 +18,7 @@ from swarm.messages.topics import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
 from swarm.runtime.lockstep import EPOCH, key_matches
 from swarm.runtime.lockstep_frames import BAD_FRAME, TICK, Answer, pack_item, unpack_answer
 from swarm.runtime.node import Sequencer
-from swarm.runtime.zenoh_session import Bus
+from swarm.runtime.zenoh_session import Session
 
 M = TypeVar("M", bound=Message)
 
@@ -38,7 +38,7 @@ class LockstepHub:
 
     def __init__(
         self,
-        bus: Bus,
+        session: Session,
         processes: list[str],
         tick_s: float,
         check: Callable[[], None],
@@ -47,9 +47,9 @@ class LockstepHub:
         ticks_per_exchange: int = 1,
     ) -> None:
         self._arrived: SimpleQueue[bytes] = SimpleQueue()
-        bus.on_arrival(LOCKSTEP_DONE, self._arrived.put)
-        self._senders = {
-            name: bus.sender(LOCKSTEP_TICK.format(process=name), Delivery.EVERY) for name in processes
+        session.on_arrival(LOCKSTEP_DONE, self._arrived.put)
+        self._publishers = {
+            name: session.publisher(LOCKSTEP_TICK.format(process=name), Delivery.EVERY) for name in processes
         }
         self._tick_ns = round(tick_s * NS_PER_S)
         self._ticks = ticks_per_exchange
@@ -73,9 +73,9 @@ class LockstepHub:
     def start(self) -> None:
         """Wait for every process's greeting; the first tick answers it."""
         deadline_s = self._monotonic_s() + GREETED_WITHIN_S
-        while missing := sorted(set(self._senders) - set(self._subscriptions)):
+        while missing := sorted(set(self._publishers) - set(self._subscriptions)):
             greeting = self._next_answer()
-            if greeting and greeting.number == 0 and greeting.process in self._senders:
+            if greeting and greeting.number == 0 and greeting.process in self._publishers:
                 self._subscriptions[greeting.process] = [item.key for item in greeting.items]
             self._check()
             if self._monotonic_s() > deadline_s:
@@ -95,14 +95,14 @@ class LockstepHub:
         start = TICK.pack(self.number, first_ns, self._tick_ns, self._ticks)
         for name, items in self._to_deliver.items():
             self._frames[name] = start + b"".join(items)
-            self._senders[name].put(self._frames[name])
+            self._publishers[name].put(self._frames[name])
             items.clear()
         # Zenoh sends from a thread of its own, which would wait until this one rests.
         os.sched_yield()
 
     def gather(self) -> Batch:
         """Every message of the tick. A tick that nobody answers is sent again and then given up."""
-        waiting = set(self._senders)
+        waiting = set(self._publishers)
         items: list[Item] = []
         began_s = named_s = self._monotonic_s()
         while waiting:
@@ -141,8 +141,8 @@ class LockstepHub:
     def finish(self) -> None:
         """End every process's ticks."""
         end = TICK.pack(self.number + 1, self.t_ns, self._tick_ns, 0)
-        for sender in self._senders.values():
-            sender.put(end)
+        for publisher in self._publishers.values():
+            publisher.put(end)
 
     def _readers_of(self, key: str) -> tuple[str, ...]:
         if key not in self._readers:
@@ -166,6 +166,6 @@ class LockstepHub:
         if now_s - named_s > NAMED_AFTER_S - WAKE_S:
             self._warn(f"tick {self.number} still waits for {names}")
             for name in waiting:
-                self._senders[name].put(self._frames[name])
+                self._publishers[name].put(self._frames[name])
             return now_s
         return named_s

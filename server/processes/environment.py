@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from server.conductor.carrier import Hand, Operator, SimulatedHand
+from server.conductor.carrier import Carrier, Operator, SimulatedCarrier
 from server.hubs.hub import Hub
 from server.hubs.live import LiveHub
 from server.hubs.lockstep import LockstepHub
@@ -21,7 +21,7 @@ from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import Experiment
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import patient
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 
 LOCKSTEP_BATCHES_BETWEEN_FLUSHES = 1000
 LIVE_FLUSH_S = 0.5
@@ -33,7 +33,7 @@ class Stage:
     """Where the messages come together, who carries robots, and how often the log is flushed."""
 
     hub: Hub
-    hand: Hand
+    carrier: Carrier
     batches_between_flushes: int
     waits_for_people: bool = False
 
@@ -54,25 +54,25 @@ def simulated(experiment: Experiment, speed: float | None, warn: Warn) -> SetSta
         with (
             socket_endpoint() as endpoint,
             keeping_to(cores[0]) if pace.lockstep else nullcontext(),
-            Bus(_hub_settings(endpoint, pace)) as bus,
+            Session(_hub_settings(endpoint, pace)) as session,
         ):
             specs = run_table(experiment, file, endpoint, trial, pace, output)
-            claim(bus, _presence())
+            claim(session, _presence())
             with Supervisor(specs, output, spread(len(specs), cores)) as supervisor:
-                hub, flush_every = _hub(experiment, bus, pace, specs, supervisor.check, warn)
-                yield Stage(hub, SimulatedHand(hub.publish), flush_every)
+                hub, flush_every = _hub(experiment, session, pace, specs, supervisor.check, warn)
+                yield Stage(hub, SimulatedCarrier(hub.publish), flush_every)
 
     return stage
 
 
-def _hub_settings(endpoint: str, pace: Pace) -> BusSettings:
-    settings = BusSettings(endpoint, hub=True)
+def _hub_settings(endpoint: str, pace: Pace) -> SessionSettings:
+    settings = SessionSettings(endpoint, hub=True)
     return patient(settings) if pace.lockstep else settings
 
 
 def _hub(
     experiment: Experiment,
-    bus: Bus,
+    session: Session,
     pace: Pace,
     specs: list[ProcessSpec],
     check: Callable[[], None],
@@ -81,10 +81,10 @@ def _hub(
     """The hub of a pace, and how many of its batches come between two flushes."""
     if not pace.lockstep:
         clock = scaled_clock(pace.started_ns, pace.speed)
-        return LiveHub(bus, clock, experiment, check, warn), _live_flush(experiment, pace.speed)
+        return LiveHub(session, clock, experiment, check, warn), _live_flush(experiment, pace.speed)
     names, ticks = [spec.name for spec in specs], experiment.ticks_per_exchange
     tick_s = experiment.simulation.tick_s
-    hub = LockstepHub(bus, names, tick_s, check, warn, ticks_per_exchange=ticks)
+    hub = LockstepHub(session, names, tick_s, check, warn, ticks_per_exchange=ticks)
     return hub, LOCKSTEP_BATCHES_BETWEEN_FLUSHES // ticks
 
 
@@ -95,13 +95,13 @@ def socket_endpoint() -> Iterator[str]:
         yield f"unixsock-stream/{place}/hub"
 
 
-def laboratory(experiment: Experiment, bus: Bus, warn: Warn) -> SetStage:
+def laboratory(experiment: Experiment, session: Session, warn: Warn) -> SetStage:
     """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
 
     @contextmanager
     def stage(trial: int, file: Path, output: Path) -> Iterator[Stage]:  # noqa: ARG001
-        claim(bus, _presence())
-        hub = LiveHub(bus, unix_clock(), experiment, _nothing_to_check, warn)
+        claim(session, _presence())
+        hub = LiveHub(session, unix_clock(), experiment, _nothing_to_check, warn)
         yield Stage(hub, Operator(hub.publish, warn), _live_flush(experiment, 1.0), waits_for_people=True)
 
     return stage

@@ -22,7 +22,7 @@ from swarm.geometry import Compartment
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.topics import Topic
-from swarm.runtime.subscription import Feed, Feeds
+from swarm.runtime.subscription import Subscription, Subscriptions
 
 ARENA, ROBOTS, LOG = "view/arena", "view/robots", "view/log"
 FRAME = "arena"
@@ -37,16 +37,18 @@ class Views:
 
     def __init__(self, experiment: Experiment) -> None:
         self._experiment = experiment
-        self._poses = Feed(topics.POSE)
+        self._poses = Subscription(topics.POSE)
         events = (topics.EVENT, topics.TRACKER_EVENT, topics.SERVER_EVENT)
-        self._events: dict[Topic[Any], Feed[pb.Event]] = {topic: Feed(topic) for topic in events}
-        self._feeds = Feeds((self._poses, *self._events.values()))
+        self._events: dict[Topic[Any], Subscription[pb.Event]] = {
+            topic: Subscription(topic) for topic in events
+        }
+        self._subscriptions = Subscriptions((self._poses, *self._events.values()))
         self._latest: dict[str, pb.Pose] = {}
         self._due_ns: int | None = None
 
     def of(self, batch: Batch) -> Iterator[View]:
         """Topic and message of every view that the batch calls for."""
-        self._feeds.put(batch.items)
+        self._subscriptions.put(batch.items)
         if self._due_ns is None:
             yield ARENA, self._arena(batch.t_ns)
         if self._due_ns is None or batch.t_ns >= self._due_ns:

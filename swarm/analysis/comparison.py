@@ -38,7 +38,7 @@ class Comparison:
     """Of that difference, by a paired t-test."""
     windows: list[Window]
     """Where the paper's pointwise t-test finds a difference at 5 %."""
-    honest_windows: list[Window]
+    family_wise_windows: list[Window]
     """Where a difference remains when all points are tested together (max-T sign flips)."""
 
 
@@ -79,7 +79,7 @@ def _compared(one: Curves, other: Curves) -> Comparison:
         effect=paired_effect_size(level_one, level_other),
         p=paired_t_test(level_one, level_other).p,
         windows=_windows(pointwise.p <= LEVEL, one),
-        honest_windows=_windows(together.p <= LEVEL, one),
+        family_wise_windows=_windows(together.p <= LEVEL, one),
     )
 
 

@@ -94,7 +94,7 @@ def sentence(found: Comparison | NoComparison) -> str:
         f"{found.moves:,} moves: {found.effect.mean_difference:+.1f} moves of best path "
         f"(95 % interval {low:+.1f} to {high:+.1f}; d_z {found.effect.d_z:.2f}; p = {found.p:.2g}). "
         f"Pointwise t-test at 5 %, as in the paper: {_windows(found.windows)}. "
-        f"All points tested together (max-T sign flips): {_windows(found.honest_windows)}."
+        f"All points tested together (max-T sign flips): {_windows(found.family_wise_windows)}."
     )
     if smallest > LEVEL:
         text += f" With {found.pairs} pairs that test cannot find any: its smallest p is {smallest:.2g}."

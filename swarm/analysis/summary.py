@@ -76,7 +76,7 @@ def _comparison(found: Comparison | NoComparison) -> dict[str, Any]:
         "d_z": found.effect.d_z,
         "p": found.p,
         "windows": [[window.start, window.end] for window in found.windows],
-        "honest_windows": [[window.start, window.end] for window in found.honest_windows],
+        "honest_windows": [[window.start, window.end] for window in found.family_wise_windows],
     }
 
 

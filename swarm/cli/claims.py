@@ -45,7 +45,7 @@ def claims_command(
     scheduler: Scheduler = "processes",
     json: Json = False,
 ) -> None:
-    """Judge every claim of the text about the simulated figures, by the paper's test and an honest one."""
+    """Judge every claim of the text about the simulated figures, by the paper's test and a family-wise."""
     asked = {"runs": runs, "steps": steps, "seed": seed, "out": out, "scheduler": scheduler}
     command = shlex.join(["swarm", *sys.argv[1:]])
     with told_when_interrupted():

@@ -96,10 +96,36 @@ class BodySettings:
 
 @dataclass(frozen=True)
 class TrackerSettings:
-    """[tracker]: which tracking system and, for the simulated one, its faults."""
+    """[tracker]: which tracking system, where it is, how its axes lie; and the simulated one's faults."""
 
     backend: str = "sim"
-    """The tracking system; see how-to-add-a-tracker.md."""
+    """The tracking system: see trackers.md, and how-to-add-a-tracker.md for a new one."""
+    server: str = ""
+    """The address of the system's own computer; empty if it sends to all, as Vicon's stream may."""
+    interface: str = "0.0.0.0"
+    """The address of this machine at which its packets arrive."""
+    port: Annotated[int, Between(0, 65_535)] = 0
+    """The port at which they arrive; 0 is the system's usual one."""
+    command_port: Annotated[int, Between(0, 65_535)] = 0
+    """The port at which the server takes questions; 0 is the system's usual one."""
+    multicast: str = ""
+    """The group that the system sends to (Motive: 239.255.42.99); empty if it sends to this machine alone."""
+    version: str = ""
+    """The protocol's version, for a server that does not answer when asked for it."""
+    system: str = ""
+    """Which system the `motioncapture` library talks to: vicon, qualisys, vrpn or optitrack."""
+    options: tuple[str, ...] = ()
+    """More settings of that library, each as `name=value`."""
+    file: str = ""
+    """The recording that the `replay` backend plays: a system's CSV export, or a log."""
+    axes: str = "x y z"
+    """The system's axes that point to the arena's east, north and up: `x -z y` if its y is up."""
+    unit_m: Annotated[float, Between(0, 100)] = 0.0
+    """Metres in one unit of the system; 0 is the unit that the system always uses."""
+    origin_m: tuple[float, float] = (0.0, 0.0)
+    """Where the system's origin lies in the arena; `tracker-bridge calibrate` finds it."""
+    turn_rad: Annotated[float, Between(-2 * math.pi, 2 * math.pi)] = 0.0
+    """How far the system's east is turned, counter-clockwise, from the arena's."""
     rate_hz: Annotated[float, Between(0.1, 1000)] = 10.0
     """Poses of each robot a second."""
     noise_m: Annotated[float, NonNegative] = 0.001
@@ -186,6 +212,10 @@ class RobotSettings:
     """The colour of its skirt, by which others see it."""
     paths: tuple[tuple[str, ...], ...] = ()
     """Paths given at the start, each a list of compass moves."""
+    body: str = ""
+    """Its name in a real tracking system; its id if empty."""
+    body_turn_rad: Annotated[float, Between(-2 * math.pi, 2 * math.pi)] = 0.0
+    """From where that system says it faces to where it does, counter-clockwise."""
 
     @property
     def group(self) -> str:

@@ -21,7 +21,7 @@ class GivenPaths:
 
 
 @dataclass(frozen=True)
-class Expert:
+class CopyExpert:
     """One who follows the arena's expert path for ever (section 2.3.2 a).
 
     The learner copies `moves` consecutive moves from a random place of that path before its first run,
@@ -33,7 +33,7 @@ class Expert:
 
 
 @dataclass(frozen=True)
-class Experienced:
+class CopyExperienced:
     """One who learnt without imitation until it had reached the goal `goal_reachings` times (2.3.2 b).
 
     It goes on learning and exploring, alternately with the learner, which copies the last `moves`
@@ -46,7 +46,7 @@ class Experienced:
 
 
 @dataclass(frozen=True)
-class EachOther:
+class CopyEachOther:
     """Two learners that start together, step alternately and copy each other (2.3.2 c)."""
 
     moves: int = 20
@@ -67,7 +67,9 @@ class AccessEachOther:
     moves: int = 20
 
 
-Teacher = NoTeacher | GivenPaths | Expert | Experienced | EachOther | AccessExpert | AccessEachOther
+Teacher = (
+    NoTeacher | GivenPaths | CopyExpert | CopyExperienced | CopyEachOther | AccessExpert | AccessEachOther
+)
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,7 @@ class Condition:
         if isinstance(self.teacher, GivenPaths) and len(self.teacher.paths) > self.capacity:
             return f"{len(self.teacher.paths)} paths do not fit a memory of {self.capacity}"
         path = len(self.arena.expert_path)
-        if isinstance(self.teacher, Expert) and self.teacher.moves > path:
+        if isinstance(self.teacher, CopyExpert) and self.teacher.moves > path:
             return f"the expert's path has {path} moves, fewer than the {self.teacher.moves} to copy"
         return None
 
@@ -126,4 +128,4 @@ class Condition:
     @property
     def learners(self) -> int:
         """Whose curves a run yields: two for a pair that teach each other, else one."""
-        return 2 if isinstance(self.teacher, EachOther | AccessEachOther) else 1
+        return 2 if isinstance(self.teacher, CopyEachOther | AccessEachOther) else 1

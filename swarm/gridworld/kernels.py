@@ -22,12 +22,12 @@ from swarm.gridworld.state import (
     NO_REPLAY,
     WATCHES_EXPERT,
     WATCHES_NOBODY,
-    Agent,
-    BestPath,
-    Learner,
+    AgentArrays,
+    ArenaArrays,
+    BestPathArrays,
+    LearnerArrays,
     Limits,
     Rules,
-    World,
 )
 
 Whole = int | np.int64 | Any
@@ -119,19 +119,19 @@ def _epsilon_greedy(actions: Word, rules: Rules, bits: Word, more_bits: Word) ->
 
 
 @_inlined
-def _explore_or_not(agent: Agent, rules: Rules) -> Word:
-    actions = _U(agent.greedy[agent.place[0]])
+def _explore_or_not(agent: AgentArrays, rules: Rules) -> Word:
+    actions = _U(agent.greedy[agent.state[0]])
     return _epsilon_greedy(actions, rules, _bits(agent.stream), _bits(agent.stream))
 
 
 @_inlined
-def _entered(world: World, place: Word, action: Word) -> Word:
+def _neighbour(world: ArenaArrays, state: Word, action: Word) -> Word:
     """`Grid.neighbour`, or the place itself if the move is blocked."""
-    return place + world.offsets[action] if (_U(world.ways[place]) >> action) & _ONE else place
+    return state + world.offsets[action] if (_U(world.ways[state]) >> action) & _ONE else state
 
 
 @_inlined
-def _ratio(agent: Agent, i: Whole, approach: Whole) -> Real:
+def _ratio(agent: AgentArrays, i: Whole, approach: Whole) -> Real:
     """`ImitationMemory.ratio`."""
     if approach == FIXED:
         return 1.0
@@ -139,7 +139,7 @@ def _ratio(agent: Agent, i: Whole, approach: Whole) -> Real:
 
 
 @_called
-def _weigh(agent: Agent, first: Whole, approach: Whole) -> None:
+def _weigh(agent: AgentArrays, first: Whole, approach: Whole) -> None:
     """Bring the ratios and their running sums up to date from the path `first` on."""
     total = agent.totals[first - 1] if first > 0 else 0.0
     for i in range(first, agent.remembered[0]):
@@ -149,7 +149,7 @@ def _weigh(agent: Agent, first: Whole, approach: Whole) -> None:
 
 
 @_inlined
-def _choose_path(agent: Agent) -> Whole:
+def _choose_path(agent: AgentArrays) -> Whole:
     """`ImitationMemory.choose`."""
     last = agent.remembered[0] - 1
     if last == 0:
@@ -162,7 +162,7 @@ def _choose_path(agent: Agent) -> Whole:
 
 
 @_called
-def remember(agent: Agent, rules: Rules, moves: NDArray[np.uint8], start: Whole, length: Whole) -> None:
+def remember(agent: AgentArrays, rules: Rules, moves: NDArray[np.uint8], start: Whole, length: Whole) -> None:
     """`ImitationMemory.remember` of `length` moves out of a ring that begins at `start`."""
     if agent.remembered[0] == len(agent.lengths):
         _forget(agent)
@@ -175,7 +175,7 @@ def remember(agent: Agent, rules: Rules, moves: NDArray[np.uint8], start: Whole,
 
 
 @_called
-def _forget(agent: Agent) -> None:
+def _forget(agent: AgentArrays) -> None:
     lowest = 0
     for i in range(1, agent.remembered[0]):
         if agent.ratios[i] < agent.ratios[lowest]:
@@ -191,30 +191,30 @@ def _forget(agent: Agent) -> None:
 
 
 @_inlined
-def _choose(agent: Agent, other: Agent, rules: Rules) -> Word:
+def _choose(agent: AgentArrays, other: AgentArrays, rules: Rules) -> Word:
     """`Controller.choose`."""
     last = False
     if agent.replayed[0] == NO_REPLAY:
         path = _choose_path(agent)
         if rules.beta * agent.ratios[path] <= _random(agent.stream):
             return _explore_or_not(agent, rules)
-        agent.replayed[0], agent.place_in_path[0], agent.change[0] = path, 0, 0.0
+        agent.replayed[0], agent.replay_index[0], agent.change[0] = path, 0, 0.0
     else:
-        agent.place_in_path[0] += 1
-        last = agent.place_in_path[0] == agent.lengths[agent.replayed[0]] - 1
-    place = agent.place[0]
+        agent.replay_index[0] += 1
+        last = agent.replay_index[0] == agent.lengths[agent.replayed[0]] - 1
+    state = agent.state[0]
     if rules.accesses:
-        action = _greedy(_U(other.greedy[place]), agent.stream)
+        action = _greedy(_U(other.greedy[state]), agent.stream)
     else:
-        action = _U(agent.paths[agent.replayed[0], agent.place_in_path[0]])
-    if not last and not (_U(agent.greedy[place]) >> action) & _ONE:
+        action = _U(agent.paths[agent.replayed[0], agent.replay_index[0]])
+    if not last and not (_U(agent.greedy[state]) >> action) & _ONE:
         _end(agent, rules, False)
         return _explore_or_not(agent, rules)
     return action
 
 
 @_inlined
-def _end(agent: Agent, rules: Rules, completed: Truth) -> None:
+def _end(agent: AgentArrays, rules: Rules, completed: Truth) -> None:
     """`Controller._end`."""
     path = agent.replayed[0]
     agent.replicated[path] += 1
@@ -224,28 +224,30 @@ def _end(agent: Agent, rules: Rules, completed: Truth) -> None:
 
 
 @_inlined
-def _update(agent: Agent, rules: Rules, place: Word, action: Word, reward: Real, entered: Word) -> Real:
+def _update(
+    agent: AgentArrays, rules: Rules, state: Word, action: Word, reward: Real, next_state: Word
+) -> Real:
     """`QTable.update`, and the set of greedy actions with it."""
-    at = place * _MOVES + action
-    change = rules.alpha * (reward + rules.gamma * agent.best[entered] - agent.q[at])
+    at = state * _MOVES + action
+    change = rules.alpha * (reward + rules.gamma * agent.best[next_state] - agent.q[at])
     value = agent.q[at] + change
     agent.q[at] = value
-    best, actions, this = agent.best[place], _U(agent.greedy[place]), _ONE << action
+    best, actions, this = agent.best[state], _U(agent.greedy[state]), _ONE << action
     joined = actions | this if value == best else actions & ~this
     actions = this if value > best else joined
     best = max(value, best)
     if actions == 0:
-        best, actions = _scan(agent.q, place)
-    agent.best[place], agent.greedy[place] = best, actions
+        best, actions = _scan(agent.q, state)
+    agent.best[state], agent.greedy[state] = best, actions
     return change
 
 
 @_called
-def _scan(q: NDArray[np.float64], place: Word) -> tuple[Real, Word]:
+def _scan(q: NDArray[np.float64], state: Word) -> tuple[Real, Word]:
     """The best value of a state and the set of actions that have it."""
-    best, actions = q[place * _MOVES], _ONE
+    best, actions = q[state * _MOVES], _ONE
     for action in range(1, MOVES):
-        value, this = q[place * _MOVES + _U(action)], _ONE << _U(action)
+        value, this = q[state * _MOVES + _U(action)], _ONE << _U(action)
         if value > best:
             best, actions = value, this
         elif value == best:
@@ -254,35 +256,35 @@ def _scan(q: NDArray[np.float64], place: Word) -> tuple[Real, Word]:
 
 
 @_called
-def prepare(agent: Agent) -> None:
+def prepare(agent: AgentArrays) -> None:
     """Find the best values and greedy sets of a table that was filled from outside."""
-    for place in range(len(agent.best)):
-        agent.best[place], agent.greedy[place] = _scan(agent.q, _U(place))
+    for state in range(len(agent.best)):
+        agent.best[state], agent.greedy[state] = _scan(agent.q, _U(state))
 
 
 @_inlined
-def step(world: World, agent: Agent, other: Agent, rules: Rules) -> Truth:
+def step(world: ArenaArrays, agent: AgentArrays, other: AgentArrays, rules: Rules) -> Truth:
     """Choose, move and learn once; whether the goal was reached, and the agent put back to the start."""
     imitates = agent.remembered[0] > 0
     action = _choose(agent, other, rules) if imitates else _explore_or_not(agent, rules)
-    place = agent.place[0]
-    entered = _entered(world, place, action)
-    arrived = entered == world.goal
-    change = _update(agent, rules, place, action, 1.0 if arrived else 0.0, entered)
+    state = agent.state[0]
+    next_state = _neighbour(world, state, action)
+    arrived = next_state == world.goal
+    change = _update(agent, rules, state, action, 1.0 if arrived else 0.0, next_state)
     if imitates and agent.replayed[0] != NO_REPLAY:
         agent.change[0] += change
-        completed = agent.place_in_path[0] == agent.lengths[agent.replayed[0]] - 1
-        if completed or arrived or entered == place:
+        completed = agent.replay_index[0] == agent.lengths[agent.replayed[0]] - 1
+        if completed or arrived or next_state == state:
             _end(agent, rules, completed)
     if rules.seen:
         _leave_trail(agent, action, arrived)
-    agent.place[0] = world.start if arrived else entered
+    agent.state[0] = world.start if arrived else next_state
     agent.arrivals[0] += arrived
     return arrived
 
 
 @_called
-def _leave_trail(agent: Agent, action: Word, arrived: Truth) -> None:
+def _leave_trail(agent: AgentArrays, action: Word, arrived: Truth) -> None:
     ring = len(agent.trail)
     agent.trail[agent.trail_moves[0] % ring] = action
     agent.trail_moves[0] += 1
@@ -293,7 +295,7 @@ def _leave_trail(agent: Agent, action: Word, arrived: Truth) -> None:
 
 
 @_called
-def copy_moves(world: World, one: Learner, two: Learner) -> None:
+def copy_moves(world: ArenaArrays, one: LearnerArrays, two: LearnerArrays) -> None:
     """`one` sees a stretch of its teacher's trajectory and remembers it.
 
     Of another agent these are its last moves, all of one run: the agents' runs are out of step, so
@@ -313,7 +315,7 @@ def copy_moves(world: World, one: Learner, two: Learner) -> None:
 
 
 @_inlined
-def _step_and_copy(world: World, one: Learner, two: Learner) -> None:
+def _step_and_copy(world: ArenaArrays, one: LearnerArrays, two: LearnerArrays) -> None:
     arrived = step(world, one.agent, two.agent, one.rules)
     watches = one.rules.watches != WATCHES_NOBODY
     if arrived and watches and one.agent.arrivals[0] % one.rules.every == 0:
@@ -321,7 +323,7 @@ def _step_and_copy(world: World, one: Learner, two: Learner) -> None:
 
 
 @_called
-def best_path_length(world: World, agent: Agent, found: BestPath) -> Whole:
+def best_path_length(world: ArenaArrays, agent: AgentArrays, found: BestPathArrays) -> Whole:
     """`greedy_path_length`; not walked again while every set that the last path rests on is the same."""
     length = found.length[0]
     unchanged = length > 0
@@ -333,45 +335,45 @@ def best_path_length(world: World, agent: Agent, found: BestPath) -> Whole:
 
 
 @_called
-def _walk(world: World, agent: Agent, found: BestPath) -> Whole:
-    place, ties, length = world.start, False, 0
-    while place != world.goal and length < len(found.route):
-        actions = _U(agent.greedy[place])
-        found.route[length], found.sets[length] = place, actions
+def _walk(world: ArenaArrays, agent: AgentArrays, found: BestPathArrays) -> Whole:
+    state, ties, length = world.start, False, 0
+    while state != world.goal and length < len(found.route):
+        actions = _U(agent.greedy[state])
+        found.route[length], found.sets[length] = state, actions
         ties |= _has_tie(actions)
-        place = _entered(world, place, _greedy(actions, found.stream))
+        state = _neighbour(world, state, _greedy(actions, found.stream))
         length += 1
     found.length[0] = 0 if ties else length
     return length
 
 
 @_called
-def _evaluate(world: World, learner: Learner, point: Whole) -> None:
+def _evaluate(world: ArenaArrays, learner: LearnerArrays, point: Whole) -> None:
     if point < len(learner.found.lengths):
         learner.found.lengths[point] = best_path_length(world, learner.agent, learner.found)
 
 
 @_inlined
-def _practise(world: World, agent: Agent, rules: Rules, steps: Whole, reachings: Whole) -> Whole:
+def _practise(world: ArenaArrays, agent: AgentArrays, rules: Rules, steps: Whole, reachings: Whole) -> Whole:
     """`step` for an agent alone with an empty memory, many times, its state kept in registers."""
-    place, word = agent.place[0], agent.stream[0]
+    state, word = agent.state[0], agent.stream[0]
     taken: Whole = 0
     while taken < steps and agent.arrivals[0] < reachings:
         bits, more_bits = _mixed(word + _GOLDEN), _mixed(word + _GOLDEN + _GOLDEN)
         word += _GOLDEN + _GOLDEN
-        action = _epsilon_greedy(_U(agent.greedy[place]), rules, bits, more_bits)
-        entered = _entered(world, place, action)
-        arrived = entered == world.goal
-        _update(agent, rules, place, action, 1.0 if arrived else 0.0, entered)
-        place = world.start if arrived else entered
+        action = _epsilon_greedy(_U(agent.greedy[state]), rules, bits, more_bits)
+        next_state = _neighbour(world, state, action)
+        arrived = next_state == world.goal
+        _update(agent, rules, state, action, 1.0 if arrived else 0.0, next_state)
+        state = world.start if arrived else next_state
         agent.arrivals[0] += arrived
         taken += 1
-    agent.place[0], agent.stream[0] = place, word
+    agent.state[0], agent.stream[0] = state, word
     return taken
 
 
 @_called
-def run(world: World, one: Learner, two: Learner, limits: Limits) -> Whole:
+def run(world: ArenaArrays, one: LearnerArrays, two: LearnerArrays, limits: Limits) -> Whole:
     """Let `one`, and in turn `two` if it takes part, act until a limit; return the steps taken.
 
     The best paths are looked for every `limits.every` steps while there is room for them.

@@ -15,15 +15,15 @@ from swarm.gridworld.condition import (
     AccessEachOther,
     AccessExpert,
     Condition,
-    EachOther,
-    Experienced,
-    Expert,
+    CopyEachOther,
+    CopyExperienced,
+    CopyExpert,
     GivenPaths,
     NoTeacher,
     Teacher,
 )
 from swarm.gridworld.splitmix import stream_word
-from swarm.gridworld.state import Agent, BestPath, Learner, Limits, Rules, World
+from swarm.gridworld.state import AgentArrays, ArenaArrays, BestPathArrays, LearnerArrays, Limits, Rules
 from swarm.learning.memory import Approach
 from swarm.learning.q_table import ALPHA, GAMMA
 
@@ -63,10 +63,10 @@ class Simulation:
             case GivenPaths(paths):
                 for path in paths:
                     _remember(self.one, np.array(path.moves, np.uint8))
-            case Experienced(goal_reachings=goal_reachings):
+            case CopyExperienced(goal_reachings=goal_reachings):
                 self._train_teacher(goal_reachings)
                 kernels.copy_moves(self.world, self.one, self.two)
-            case Expert():
+            case CopyExpert():
                 kernels.copy_moves(self.world, self.one, self.two)
             case AccessExpert(moves):
                 self.two.agent.q[:] = expert_values(condition.arena, GAMMA).ravel()
@@ -90,7 +90,7 @@ class Simulation:
             steps or condition.steps or UNLIMITED,
             condition.goal_reachings or UNLIMITED,
             condition.evaluate_every,
-            pair=isinstance(condition.teacher, EachOther | AccessEachOther | Experienced),
+            pair=isinstance(condition.teacher, CopyEachOther | AccessEachOther | CopyExperienced),
         )
         return int(kernels.run(self.world, self.one, self.two, limits))
 
@@ -106,7 +106,7 @@ class Simulation:
         return Trace(lengths, ratios, steps)
 
 
-def _remember(learner: Learner, moves: NDArray[np.uint8]) -> None:
+def _remember(learner: LearnerArrays, moves: NDArray[np.uint8]) -> None:
     kernels.remember(learner.agent, learner.rules, moves, 0, len(moves))
 
 
@@ -122,17 +122,19 @@ APPROACHES = {
 }
 
 
-def world(arena: Arena) -> World:
+def world(arena: Arena) -> ArenaArrays:
     """An arena as the kernels see it."""
     ends = np.uint64(arena.grid.start), np.uint64(arena.grid.goal)
-    return World(ways(arena), offsets(arena), *ends, np.array(arena.expert_path, np.uint8))
+    return ArenaArrays(ways(arena), offsets(arena), *ends, np.array(arena.expert_path, np.uint8))
 
 
-def learners(condition: Condition, seed: int, run: int) -> tuple[Learner, Learner]:
+def learners(condition: Condition, seed: int, run: int) -> tuple[LearnerArrays, LearnerArrays]:
     """The first learner, and its teacher or the other learner: both have learnt nothing yet."""
     points = (condition.point_limit, condition.point_limit if condition.learners == 2 else 0)
     one, two = (
-        Learner(_agent(condition, seed, run, name), settings, _best_path(condition, limit, seed, run, name))
+        LearnerArrays(
+            _agent(condition, seed, run, name), settings, _best_path(condition, limit, seed, run, name)
+        )
         for name, settings, limit in zip(("one", "two"), _rules(condition), points, strict=True)
     )
     return one, two
@@ -148,17 +150,17 @@ def _rules(condition: Condition) -> tuple[Rules, Rules]:
         beta=condition.beta,
         approach=APPROACHES[condition.approach],
         watches=state.WATCHES_NOBODY,
-        every=teacher.every if isinstance(teacher, Expert | Experienced | EachOther) else 1,
+        every=teacher.every if isinstance(teacher, CopyExpert | CopyExperienced | CopyEachOther) else 1,
         moves=_moves(teacher),
         accesses=isinstance(teacher, AccessExpert | AccessEachOther),
         seen=False,
     )
     match teacher:
-        case Expert():
+        case CopyExpert():
             return rules._replace(watches=state.WATCHES_EXPERT), rules
-        case Experienced():
+        case CopyExperienced():
             return rules._replace(watches=state.WATCHES_OTHER), rules._replace(seen=True)
-        case EachOther():
+        case CopyEachOther():
             both = rules._replace(watches=state.WATCHES_OTHER, seen=True)
             return both, both
     return rules, rules
@@ -174,14 +176,14 @@ def _moves(teacher: Teacher) -> int:
     return teacher.moves
 
 
-def _agent(condition: Condition, seed: int, run: int, name: str) -> Agent:
+def _agent(condition: Condition, seed: int, run: int, name: str) -> AgentArrays:
     states, capacity = condition.arena.grid.states, condition.capacity
     moves = _moves(condition.teacher)
-    return Agent(
+    return AgentArrays(
         q=np.zeros(states * MOVES),
         best=np.zeros(states),
         greedy=np.full(states, (1 << MOVES) - 1, np.uint8),
-        place=np.full(1, condition.arena.grid.start, np.uint64),
+        state=np.full(1, condition.arena.grid.start, np.uint64),
         arrivals=np.zeros(1, np.int64),
         stream=np.array([stream_word(seed, run, name, "choices")], np.uint64),
         watching=np.array([stream_word(seed, run, name, "watching")], np.uint64),
@@ -193,7 +195,7 @@ def _agent(condition: Condition, seed: int, run: int, name: str) -> Agent:
         totals=np.zeros(capacity),
         remembered=np.zeros(1, np.int64),
         replayed=np.full(1, state.NO_REPLAY, np.int64),
-        place_in_path=np.zeros(1, np.int64),
+        replay_index=np.zeros(1, np.int64),
         change=np.zeros(1),
         trail=np.zeros(moves, np.uint8),
         trail_moves=np.zeros(1, np.int64),
@@ -202,9 +204,9 @@ def _agent(condition: Condition, seed: int, run: int, name: str) -> Agent:
     )
 
 
-def _best_path(condition: Condition, points: int, seed: int, run: int, name: str) -> BestPath:
+def _best_path(condition: Condition, points: int, seed: int, run: int, name: str) -> BestPathArrays:
     """Room for `points` evaluations; their random numbers are their own and disturb no learning."""
-    return BestPath(
+    return BestPathArrays(
         route=np.zeros(condition.arena.longest_path, np.uint16),
         sets=np.zeros(condition.arena.longest_path, np.uint8),
         length=np.zeros(1, np.int64),

@@ -12,7 +12,7 @@ FIXED, COMPLETION, AVERAGE_Q = 0, 1, 2
 WATCHES_NOBODY, WATCHES_EXPERT, WATCHES_OTHER = 0, 1, 2
 
 
-class World(NamedTuple):
+class ArenaArrays(NamedTuple):
     """The arena and the two ends of a run."""
 
     ways: NDArray[np.uint8]
@@ -52,7 +52,7 @@ class Limits(NamedTuple):
     pair: bool
 
 
-class Agent(NamedTuple):
+class AgentArrays(NamedTuple):
     """One agent: its table, its memory of paths, and the moves that others may have seen of it.
 
     Single numbers are arrays of one, so that the kernels can change them.
@@ -64,7 +64,7 @@ class Agent(NamedTuple):
     """max_a Q(s, a) (states,)"""
     greedy: NDArray[np.uint8]
     """The set of actions that have that value (states,)"""
-    place: NDArray[np.uint64]
+    state: NDArray[np.uint64]
     arrivals: NDArray[np.int64]
     stream: NDArray[np.uint64]
     watching: NDArray[np.uint64]
@@ -82,7 +82,7 @@ class Agent(NamedTuple):
     remembered: NDArray[np.int64]
     replayed: NDArray[np.int64]
     """The memory's place of the path being replayed, or NO_REPLAY"""
-    place_in_path: NDArray[np.int64]
+    replay_index: NDArray[np.int64]
     change: NDArray[np.float64]
     """The sum of the replay's changes of Q values"""
     trail: NDArray[np.uint8]
@@ -94,7 +94,7 @@ class Agent(NamedTuple):
     shown_moves: NDArray[np.int64]
 
 
-class BestPath(NamedTuple):
+class BestPathArrays(NamedTuple):
     """The last greedy path found without a random choice, and the sets that it rests on."""
 
     route: NDArray[np.uint16]
@@ -106,9 +106,9 @@ class BestPath(NamedTuple):
     """What was found so far (points,)"""
 
 
-class Learner(NamedTuple):
+class LearnerArrays(NamedTuple):
     """An agent, how it learns, and what was found of its best path."""
 
-    agent: Agent
+    agent: AgentArrays
     rules: Rules
-    found: BestPath
+    found: BestPathArrays

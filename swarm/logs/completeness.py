@@ -74,7 +74,7 @@ class HealthTable:
             "seed": self.identity.seed,
             "trial": self.identity.trial,
             "key": channel.key,
-            "robot": channel.sender,
+            "robot": channel.publisher,
             "delivery": topic[0].delivery.value if topic else "",
             "epoch": channel.epoch,
             "declared_hz": topic[0].rate_hz if topic else None,

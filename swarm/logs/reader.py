@@ -61,7 +61,7 @@ class LogChannel:
         return self.schema.startswith("foxglove.")
 
     @property
-    def sender(self) -> str:
+    def publisher(self) -> str:
         """The robot's id; "tracker", "server" or "run" for a key that names no robot."""
         found = topic_of(self.key)
         return (found[1] if found else "") or self.key.split("/")[0]

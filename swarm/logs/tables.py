@@ -138,7 +138,7 @@ def _sorted_out(part: Part, message_type: type[Message]) -> tuple[list[Message],
 
 def _origin(part: Part, identity: LogIdentity, good: slice | list[int]) -> dict[str, pl.Series]:
     sequence = part.sequence[good]
-    sender = part.channel.sender
+    publisher = part.channel.publisher
 
     def constant(value: str | int) -> pl.Series:
         return pl.repeat(
@@ -149,8 +149,8 @@ def _origin(part: Part, identity: LogIdentity, good: slice | list[int]) -> dict[
         "log": constant(str(identity.path)),
         "seed": constant(identity.seed),
         "trial": constant(identity.trial),
-        "condition": constant(identity.condition(sender)),
-        "robot": constant(sender),
+        "condition": constant(identity.condition(publisher)),
+        "robot": constant(publisher),
         "epoch": constant(part.channel.epoch),
         "sequence": pl.Series(sequence),
         "publish_t_ns": pl.Series(part.publish_t_ns[good]),

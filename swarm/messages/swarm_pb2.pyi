@@ -24,7 +24,7 @@ DESCRIPTOR: _descriptor.FileDescriptor
 
 @_typing.final
 class Pose(_message.Message):
-    """Where the tracking system saw a robot, and when."""
+    """Where the tracking system saw a robot, and when. What a system does not say stays 0."""
 
     DESCRIPTOR: _descriptor.Descriptor
 
@@ -32,10 +32,22 @@ class Pose(_message.Message):
     Y_M_FIELD_NUMBER: _builtins.int
     THETA_RAD_FIELD_NUMBER: _builtins.int
     CAPTURED_T_NS_FIELD_NUMBER: _builtins.int
+    RECEIVED_T_NS_FIELD_NUMBER: _builtins.int
+    SOURCE_T_NS_FIELD_NUMBER: _builtins.int
+    RESIDUAL_M_FIELD_NUMBER: _builtins.int
+    QUALITY_FIELD_NUMBER: _builtins.int
     x_m: _builtins.float
     y_m: _builtins.float
     theta_rad: _builtins.float
     captured_t_ns: _builtins.int
+    received_t_ns: _builtins.int
+    """the run's time at which it reached the bridge"""
+    source_t_ns: _builtins.int
+    """the time of capture by the tracking system's own clock"""
+    residual_m: _builtins.float
+    """how far the markers were from where they should be"""
+    quality: _builtins.float
+    """the share of the robot's markers that were seen"""
     def __init__(
         self,
         *,
@@ -43,10 +55,14 @@ class Pose(_message.Message):
         y_m: _builtins.float = ...,
         theta_rad: _builtins.float = ...,
         captured_t_ns: _builtins.int = ...,
+        received_t_ns: _builtins.int = ...,
+        source_t_ns: _builtins.int = ...,
+        residual_m: _builtins.float = ...,
+        quality: _builtins.float = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["captured_t_ns", b"captured_t_ns", "theta_rad", b"theta_rad", "x_m", b"x_m", "y_m", b"y_m"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["captured_t_ns", b"captured_t_ns", "quality", b"quality", "received_t_ns", b"received_t_ns", "residual_m", b"residual_m", "source_t_ns", b"source_t_ns", "theta_rad", b"theta_rad", "x_m", b"x_m", "y_m", b"y_m"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 

@@ -8,9 +8,9 @@ from swarm.gridworld.condition import (
     AccessEachOther,
     AccessExpert,
     Condition,
-    EachOther,
-    Experienced,
-    Expert,
+    CopyEachOther,
+    CopyExperienced,
+    CopyExpert,
     GivenPaths,
     NoTeacher,
     Teacher,
@@ -60,9 +60,9 @@ SMALL_NO_IMITATION = _small("small_no_imitation", NoTeacher(), 0.5, Approach.AVE
 
 NO_IMITATION = _large("no_imitation", NoTeacher())
 GIVEN_EIGHT_PATHS = _large("eight_paths", GivenPaths(EIGHT_PATHS))
-COPYING_EXPERT = _large("copying_expert", Expert())
-COPYING_EXPERIENCED = _large("copying_experienced", Experienced())
-COPYING_EACH_OTHER = _large("copying_each_other", EachOther())
+COPYING_EXPERT = _large("copying_expert", CopyExpert())
+COPYING_EXPERIENCED = _large("copying_experienced", CopyExperienced())
+COPYING_EACH_OTHER = _large("copying_each_other", CopyEachOther())
 ACCESSING_EXPERT = _large("accessing_expert", AccessExpert())
 ACCESSING_EACH_OTHER = _large("accessing_each_other", AccessEachOther())
 

@@ -16,10 +16,10 @@ from swarm.paper.verdicts.judge import Judged
 from swarm.paper.verdicts.wording import in_windows
 from swarm.statistics.effect_size import EffectSize
 
-COLUMNS = ("compared", "paper's test", "honest test", "effect (95 % interval)", "verdict")
+COLUMNS = ("compared", "paper's test", "family-wise test", "effect (95 % interval)", "verdict")
 
 LEGEND = (
-    "Paper's test: a paired t-test at each of about 200 points, each on its own. Honest test: max-T sign "
+    "Paper's test: a paired t-test at each of about 200 points, each on its own. Family-wise: max-T sign "
     "flips of the paired differences, which hold 5 % over all points. Both show where the claim is "
     "supported and, after 'against', where its opposite is; gaps of up to 5 points are overlooked, and "
     "stretches of fewer than 3 points left out. Effect: the mean paired difference over the claimed time, in "
@@ -33,7 +33,7 @@ def row(finding: Finding) -> tuple[str, ...]:
     return (
         finding.compared,
         tested(finding.paper_test),
-        tested(finding.honest_test),
+        tested(finding.family_wise_test),
         effect(finding.effect, finding.effect_unit),
         f"{finding.verdict.value}: {finding.why}",
     )

@@ -37,7 +37,7 @@ def _finding(finding: Finding) -> dict[str, Any]:
         "verdict": finding.verdict.value,
         "why": finding.why,
         "paper_test": _tested(finding.paper_test),
-        "honest_test": _tested(finding.honest_test),
+        "honest_test": _tested(finding.family_wise_test),
         "effect": _effect(finding.effect, finding.effect_unit),
     }
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from swarm.errors import UserError
 from swarm.messages.topics import ALIVE
-from swarm.runtime.zenoh_session import Bus
+from swarm.runtime.zenoh_session import Session
 
 
 @dataclass(frozen=True)
@@ -31,19 +31,21 @@ class Presence:
         return cls(kind, name, host, int(epoch))
 
 
-def present(bus: Bus, kind: str, name: str = "*") -> list[Presence]:
+def present(session: Session, kind: str, name: str = "*") -> list[Presence]:
     """Everyone of a kind, or with a name, who is alive now."""
-    return [Presence.parse(key) for key in bus.alive(ALIVE.format(kind=kind, name=name, host="*", epoch="*"))]
+    return [
+        Presence.parse(key) for key in session.alive(ALIVE.format(kind=kind, name=name, host="*", epoch="*"))
+    ]
 
 
-def claim(bus: Bus, presence: Presence) -> None:
+def claim(session: Session, presence: Presence) -> None:
     """Take a name, or UserError with both hosts if another process has it.
 
     Of two that claim at the same moment, the one with the earlier epoch stays.
     """
-    _refuse_if_taken(presence, present(bus, presence.kind, presence.name))
-    bus.declare_alive(presence.key)
-    others = [other for other in present(bus, presence.kind, presence.name) if other != presence]
+    _refuse_if_taken(presence, present(session, presence.kind, presence.name))
+    session.declare_alive(presence.key)
+    others = [other for other in present(session, presence.kind, presence.name) if other != presence]
     _refuse_if_taken(presence, [other for other in others if other.epoch <= presence.epoch])
 
 

@@ -14,8 +14,8 @@ from swarm.messages.header import Header, Item
 from swarm.messages.topics import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
 from swarm.runtime.lockstep_frames import BAD_FRAME, TICK, pack_answer, pack_item, unpack_items
 from swarm.runtime.node import Sequencer, Step
-from swarm.runtime.subscription import Feed
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.subscription import Subscription
+from swarm.runtime.zenoh_session import Session, SessionSettings
 
 M = TypeVar("M", bound=Message)
 
@@ -29,12 +29,12 @@ EPOCH = 1
 """A process of a lockstep run is started once, so its epoch is the same in every repetition."""
 
 
-def patient(settings: BusSettings) -> BusSettings:
+def patient(settings: SessionSettings) -> SessionSettings:
     """Settings of a session, hub's or process's, for a lockstep."""
     return replace(settings, lease_s=LEASE_S)
 
 
-class LockstepLink:
+class LockstepNode:
     """Steps when the hub says so, and sends everything it published in one message an exchange.
 
     Ticks are numbered and idempotent: a repeated tick gets the same answer again.
@@ -46,12 +46,12 @@ class LockstepLink:
     large or asked for again and greetings, is left to the main thread, as is what a step raises.
     """
 
-    def __init__(self, bus: Bus, process: str) -> None:
-        self._bus = bus
+    def __init__(self, session: Session, process: str) -> None:
+        self._session = session
         self._process = process
-        self._done = bus.sender(LOCKSTEP_DONE, Delivery.EVERY)
-        self._feeds: list[tuple[str, Feed[Any]]] = []
-        self._routes: dict[str, tuple[Feed[Any], ...]] = {}
+        self._done = session.publisher(LOCKSTEP_DONE, Delivery.EVERY)
+        self._subscriptions: list[tuple[str, Subscription[Any]]] = []
+        self._routes: dict[str, tuple[Subscription[Any], ...]] = {}
         self._sequencer = Sequencer()
         self._published: list[bytes] = []
         self._answer = b""
@@ -66,10 +66,10 @@ class LockstepLink:
         self.keys_received: set[str] = set()
         """Every key of which this process received a message."""
 
-    def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
-        feed = Feed(topic)
-        self._feeds.append((topic.key(robot), feed))
-        return feed
+    def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
+        subscription = Subscription(topic)
+        self._subscriptions.append((topic.key(robot), subscription))
+        return subscription
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         key = topic.key(robot)
@@ -77,7 +77,7 @@ class LockstepLink:
         self._published.append(pack_item(key, header, message.SerializeToString()))
 
     def run(self, step: Step) -> None:
-        self._bus.on_arrival(LOCKSTEP_TICK.format(process=self._process), partial(self._on_tick, step))
+        self._session.on_arrival(LOCKSTEP_TICK.format(process=self._process), partial(self._on_tick, step))
         try:
             self._wait_for_end()
         finally:
@@ -159,11 +159,11 @@ class LockstepLink:
             self._done.put(self._answer)
 
     def _hub_is_alive(self) -> bool:
-        return bool(self._bus.alive("alive/server/**"))
+        return bool(self._session.alive("alive/server/**"))
 
     def _greet(self) -> None:
         """Repeated until the first tick: a message sent right after declaring may be lost."""
-        listens_to = sorted({key for key, _ in self._feeds})
+        listens_to = sorted({key for key, _ in self._subscriptions})
         keys = b"".join(pack_item(key, Header(EPOCH, 0, 0), b"") for key in listens_to)
         self._done.put(pack_answer(0, self._process) + keys)
 
@@ -175,13 +175,17 @@ class LockstepLink:
         return [item for item in waiting if item.header.t_ns > published_ns]
 
     def _deliver(self, key: str, header: Header, payload: bytes) -> None:
-        feeds = self._routes.get(key)
-        if feeds is None:
-            feeds = tuple(feed for expression, feed in self._feeds if key_matches(expression, key))
-            self._routes[key] = feeds
+        subscriptions = self._routes.get(key)
+        if subscriptions is None:
+            subscriptions = tuple(
+                subscription
+                for expression, subscription in self._subscriptions
+                if key_matches(expression, key)
+            )
+            self._routes[key] = subscriptions
             self.keys_received.add(key)
-        for feed in feeds:
-            feed.put(key, header, payload)
+        for subscription in subscriptions:
+            subscription.put(key, header, payload)
 
 
 def key_matches(expression: str, key: str) -> bool:

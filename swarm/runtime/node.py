@@ -12,8 +12,8 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header
 from swarm.messages.topics import Topic
-from swarm.runtime.subscription import Feed
-from swarm.runtime.zenoh_session import Bus, Inbox, Sender
+from swarm.runtime.subscription import Subscription
+from swarm.runtime.zenoh_session import Inbox, Publisher, Session
 
 M = TypeVar("M", bound=Message)
 
@@ -21,14 +21,14 @@ Step = Callable[[int], None]
 """What a process does at a tick, given the run's time in nanoseconds."""
 
 
-class Link(Protocol):
+class Node(Protocol):
     """The same for real time and for lockstep, so that no process knows which it is in."""
 
     keys_received: set[str]
     """Every key of which this process received a message."""
 
-    def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
-        """A feed of one robot's messages, or of all robots'."""
+    def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
+        """A subscription of one robot's messages, or of all robots'."""
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         """Send a message under the robot's key."""
@@ -53,33 +53,33 @@ class Sequencer:
         return number
 
 
-class LiveLink:
+class LiveNode:
     """Takes part over the network at the pace of a clock: on boards, and in simulation at a given speed."""
 
-    def __init__(self, bus: Bus, clock: WallClock, period_s: float, epoch: int) -> None:
-        self._bus = bus
+    def __init__(self, session: Session, clock: WallClock, period_s: float, epoch: int) -> None:
+        self._session = session
         self._clock = clock
         self._period_s = period_s
         self._epoch = epoch
         self._sequencer = Sequencer()
-        self._senders: dict[str, Sender] = {}
-        self._inboxes: list[tuple[Inbox, Feed[Any]]] = []
+        self._publishers: dict[str, Publisher] = {}
+        self._inboxes: list[tuple[Inbox, Subscription[Any]]] = []
         self.keys_received: set[str] = set()
         self._run_states = self.subscribe(topics.RUN_STATE)
 
-    def subscribe(self, topic: Topic[M], robot: str = "*") -> Feed[M]:
-        """A feed filled at every tick; `*` in a key keeps every message, since it holds many keys."""
-        feed = Feed(topic)
-        inbox = self._bus.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
-        self._inboxes.append((inbox, feed))
-        return feed
+    def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
+        """A subscription filled at every tick; `*` in a key keeps every message, since it holds many keys."""
+        subscription = Subscription(topic)
+        inbox = self._session.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
+        self._inboxes.append((inbox, subscription))
+        return subscription
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         key = topic.key(robot)
         header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
-        if key not in self._senders:
-            self._senders[key] = self._bus.sender(key, topic.delivery)
-        self._senders[key].put(message.SerializeToString(), attachment=header.pack())
+        if key not in self._publishers:
+            self._publishers[key] = self._session.publisher(key, topic.delivery)
+        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):
@@ -89,7 +89,7 @@ class LiveLink:
                 return
 
     def _take_in(self) -> None:
-        for inbox, feed in self._inboxes:
+        for inbox, subscription in self._inboxes:
             for sample in inbox.poll():
                 self.keys_received.add(sample.key)
-                feed.put(sample.key, Header.unpack(sample.attachment), sample.payload)
+                subscription.put(sample.key, Header.unpack(sample.attachment), sample.payload)

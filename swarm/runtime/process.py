@@ -20,9 +20,9 @@ from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.runtime.liveliness import Presence, claim
-from swarm.runtime.lockstep import EPOCH, LockstepLink, patient
-from swarm.runtime.node import Link, LiveLink
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.lockstep import EPOCH, LockstepNode, patient
+from swarm.runtime.node import LiveNode, Node
+from swarm.runtime.zenoh_session import Session, SessionSettings
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 
@@ -59,21 +59,21 @@ def load_experiment(arguments: argparse.Namespace) -> Experiment:
 
 
 @contextmanager
-def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s: float) -> Iterator[Link]:
-    """The link of a process that is present under its names for as long as the block runs."""
+def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s: float) -> Iterator[Node]:
+    """The node of a process that is present under its names for as long as the block runs."""
     epoch = EPOCH if arguments.lockstep else time.time_ns()
-    settings = BusSettings(arguments.connect, config=arguments.zenoh_config)
+    settings = SessionSettings(arguments.connect, config=arguments.zenoh_config)
     if arguments.lockstep:
         settings = patient(settings)
-    with Bus(settings) as bus:
+    with Session(settings) as session:
         for name in names:
-            claim(bus, Presence(kind, name, socket.gethostname(), epoch))
+            claim(session, Presence(kind, name, socket.gethostname(), epoch))
         if arguments.lockstep:
-            yield LockstepLink(bus, arguments.process)
+            yield LockstepNode(session, arguments.process)
         elif arguments.started_ns:
-            yield LiveLink(bus, scaled_clock(arguments.started_ns, arguments.speed), period_s, epoch)
+            yield LiveNode(session, scaled_clock(arguments.started_ns, arguments.speed), period_s, epoch)
         else:
-            yield LiveLink(bus, unix_clock(), period_s, epoch)
+            yield LiveNode(session, unix_clock(), period_s, epoch)
 
 
 def leave_on_signals() -> None:

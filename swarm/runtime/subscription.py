@@ -22,7 +22,7 @@ class Received(NamedTuple, Generic[M]):
     message: M
 
 
-class Feed(Generic[M]):
+class Subscription(Generic[M]):
     """The messages of one topic that arrived since the last `take`.
 
     Of a `NEWEST` topic only the last of each key is kept. A message that repeats or comes before one
@@ -42,7 +42,7 @@ class Feed(Generic[M]):
         """Why the last bad message was refused, with its key."""
 
     def put(self, key: str, header: Header | None, payload: bytes) -> None:
-        """Take in what the link received; nothing is decoded yet."""
+        """Take in what the node received; nothing is decoded yet."""
         if header is None:
             self._refuse(key, "it has no header")
             return
@@ -83,24 +83,24 @@ class Feed(Generic[M]):
         self.last_bad = f"{key[:80]!r}: {reason}"
 
 
-class Feeds:
-    """Feeds of several topics, each of which takes in what is its own."""
+class Subscriptions:
+    """Subscriptions of several topics, each of which takes in what is its own."""
 
-    def __init__(self, feeds: Iterable[Feed[Any]]) -> None:
-        self._feeds = {feed.topic: feed for feed in feeds}
-        self._by_key: dict[str, Feed[Any] | None] = {}
+    def __init__(self, subscriptions: Iterable[Subscription[Any]]) -> None:
+        self._subscriptions = {subscription.topic: subscription for subscription in subscriptions}
+        self._by_key: dict[str, Subscription[Any] | None] = {}
 
     def put(self, items: Iterable[Item]) -> None:
-        """Keys that belong to no feed are passed over."""
+        """Keys that belong to no subscription are passed over."""
         for item in items:
             if item.key not in self._by_key:
                 found = topic_of(item.key)
-                self._by_key[item.key] = self._feeds.get(found[0]) if found else None
-            feed = self._by_key[item.key]
-            if feed is not None:
-                feed.put(*item)
+                self._by_key[item.key] = self._subscriptions.get(found[0]) if found else None
+            subscription = self._by_key[item.key]
+            if subscription is not None:
+                subscription.put(*item)
 
     @property
     def bad(self) -> int:
         """Messages refused so far."""
-        return sum(feed.bad for feed in self._feeds.values())
+        return sum(subscription.bad for subscription in self._subscriptions.values())

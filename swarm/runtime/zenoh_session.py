@@ -30,7 +30,7 @@ WAIT_FOR_ROOM_S = 5.0
 
 
 @dataclass(frozen=True)
-class BusSettings:
+class SessionSettings:
     """How a process reaches the others.
 
     The hub listens on `endpoint` (tcp/HOST:PORT or, on one machine, unixsock-stream/FILE) and routes;
@@ -46,7 +46,7 @@ class BusSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class Sample:
+class WireSample:
     """What arrived: key, payload, and the bytes beside it."""
 
     key: str
@@ -60,7 +60,7 @@ class Inbox:
     def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
         self._subscriber = subscriber
 
-    def poll(self) -> list[Sample]:
+    def poll(self) -> list[WireSample]:
         """Everything that has arrived since the last call."""
         samples = []
         while (sample := self._subscriber.try_recv()) is not None:
@@ -74,7 +74,7 @@ class Put(Protocol):
     def __call__(self, payload: bytes, *, attachment: bytes | None = None) -> None: ...
 
 
-class Sender:
+class Publisher:
     """Puts payloads under one key."""
 
     def __init__(self, publisher: zenoh.Publisher) -> None:
@@ -82,10 +82,10 @@ class Sender:
         """Zenoh's own, without a call in between, which would show in the pace of a lockstep."""
 
 
-class Bus:
+class Session:
     """A Zenoh session. Use it as a context manager: a session that is not closed hangs at exit."""
 
-    def __init__(self, settings: BusSettings) -> None:
+    def __init__(self, settings: SessionSettings) -> None:
         os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
         import zenoh
 
@@ -98,7 +98,7 @@ class Bus:
         except zenoh.ZError as error:
             raise UserError(_why_not_open(settings, str(error))) from error
 
-    def __enter__(self) -> Bus:
+    def __enter__(self) -> Session:
         return self
 
     def __exit__(
@@ -114,11 +114,11 @@ class Bus:
         if not self._session.is_closed():
             self._session.close()  # type: ignore[no-untyped-call]
 
-    def sender(self, key: str, delivery: Delivery) -> Sender:
+    def publisher(self, key: str, delivery: Delivery) -> Publisher:
         """A publisher with the delivery's guarantees."""
         control = self._zenoh.CongestionControl
         priority = self._zenoh.Priority
-        return Sender(
+        return Publisher(
             self._session.declare_publisher(
                 key,
                 congestion_control=control.BLOCK if delivery is Delivery.EVERY else control.DROP,
@@ -174,14 +174,14 @@ def _keep_python_state() -> None:
     ctypes.pythonapi.PyGILState_Ensure()
 
 
-def _sample(sample: zenoh.Sample) -> Sample:
+def _sample(sample: zenoh.Sample) -> WireSample:
     attachment = sample.attachment
-    return Sample(
+    return WireSample(
         str(sample.key_expr), bytes(sample.payload), bytes(attachment) if attachment is not None else b""
     )
 
 
-def _config(settings: BusSettings) -> zenoh.Config:
+def _config(settings: SessionSettings) -> zenoh.Config:
     """Scouting, gossip and shared memory off: explicit endpoints only, and nothing lost in /dev/shm."""
     import zenoh
 
@@ -220,7 +220,7 @@ def _reason(error: str) -> str:
     return " ".join(error.partition(" at /")[0].split())[:120]
 
 
-def _why_not_open(settings: BusSettings, error: str) -> str:
+def _why_not_open(settings: SessionSettings, error: str) -> str:
     reason = _reason(error)
     if settings.hub:
         cure = "is another server running there, or is the address not this machine's?"

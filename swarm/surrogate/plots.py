@@ -16,16 +16,18 @@ from swarm.statistics.samples import Curves
 ERROR_BARS = 15
 
 
-def draw_side_by_side(paper: dict[str, Curves], honest: dict[str, Curves], title: str, note: str) -> Figure:
+def draw_side_by_side(
+    paper: dict[str, Curves], family_wise: dict[str, Curves], title: str, note: str
+) -> Figure:
     """Left the paper's picture (lines with error bars), right all trials (lines with bands)."""
     figure = Figure(figsize=(12.0, 5.2), layout="constrained")
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
     for place, (name, curves) in enumerate(paper.items()):
         _draw_error_bars(left, name, curves, COLOURS[place], place)
-    for place, (name, curves) in enumerate(honest.items()):
+    for place, (name, curves) in enumerate(family_wise.items()):
         _draw_band(right, name, curves, COLOURS[place])
     left.set_title(f"as in the paper: {_trials(paper)}, mean and 95 % intervals", fontsize=11)
-    right.set_title(f"{_trials(honest)}, mean, its 95 % interval, and the middle half", fontsize=11)
+    right.set_title(f"{_trials(family_wise)}, mean, its 95 % interval, and the middle half", fontsize=11)
     for axes in (left, right):
         axes.set_xlabel("moves made by the learner")
         axes.xaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
@@ -47,9 +49,9 @@ def first_trials(curves: dict[str, Curves], count: int) -> dict[str, Curves]:
 
 
 def write_picture(
-    paper: dict[str, Curves], honest: dict[str, Curves], title: str, note: str, path: Path
+    paper: dict[str, Curves], family_wise: dict[str, Curves], title: str, note: str, path: Path
 ) -> None:
-    save_png(draw_side_by_side(paper, honest, title, note), path)
+    save_png(draw_side_by_side(paper, family_wise, title, note), path)
 
 
 def _drawn(curves: Curves) -> Curves:

@@ -34,7 +34,7 @@ MOVES_KEPT = 100
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ShownMoves:
     """A move as an observer could see it."""
 
     move: Move
@@ -43,7 +43,7 @@ class Shown:
     track: int
 
 
-class FastRobot(ABC):
+class SurrogateRobot(ABC):
     """Moves from cell to cell in its own time, and can be watched."""
 
     def __init__(
@@ -52,7 +52,7 @@ class FastRobot(ABC):
         self.settings = settings
         self.t_s = 0.0
         self.moves = self.tracks = 0
-        self.shown: deque[Shown] = deque(maxlen=MOVES_KEPT)
+        self.shown: deque[ShownMoves] = deque(maxlen=MOVES_KEPT)
         self._experiment, self._trial = experiment, trial
         self.grid = Grid(experiment.arena.columns, experiment.arena.rows)
         self._state, self._heading = self.grid.start, HEADING_AT_THE_START
@@ -73,7 +73,7 @@ class FastRobot(ABC):
         arrived = next_state == self.grid.goal
         self.learn(self._state, action, next_state, duration_s, blocked=blocked, arrived=arrived)
         if not blocked:
-            self.shown.append(Shown(Move(action), self.t_s, self.t_s + duration_s, self.tracks))
+            self.shown.append(ShownMoves(Move(action), self.t_s, self.t_s + duration_s, self.tracks))
             self._heading = action
         self.t_s += duration_s
         self.moves += 1
@@ -103,7 +103,7 @@ class FastRobot(ABC):
         """Take in what came of the last choice."""
 
 
-class FastExpert(FastRobot):
+class SurrogateExpert(SurrogateRobot):
     """Follows the shortest path of a square grid for ever."""
 
     def choose(self, state: int) -> int:
@@ -116,7 +116,7 @@ class FastExpert(FastRobot):
         """An expert has nothing to learn."""
 
 
-class FastLearner(FastRobot):
+class SurrogateLearner(SurrogateRobot):
     """Algorithm 3 with eq. 7: the very same controller, memory and table as on a robot."""
 
     def __init__(
@@ -159,8 +159,8 @@ class FastLearner(FastRobot):
         self.memory.remember(ObservedPath(tuple(moves)))
 
 
-def fast_robot(
+def surrogate_robot(
     experiment: Experiment, settings: RobotSettings, durations: Durations, trial: int
-) -> FastRobot:
-    made = FastExpert if settings.role is Role.EXPERT else FastLearner
+) -> SurrogateRobot:
+    made = SurrogateExpert if settings.role is Role.EXPERT else SurrogateLearner
     return made(experiment, settings, durations, trial)

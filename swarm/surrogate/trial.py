@@ -11,7 +11,7 @@ from swarm.config.experiment import Experiment
 from swarm.geometry import Move
 from swarm.surrogate.copies import CopyStore
 from swarm.surrogate.durations import HEADING_AT_THE_START, Durations
-from swarm.surrogate.robots import FastLearner, FastRobot, Shown, fast_robot
+from swarm.surrogate.robots import ShownMoves, SurrogateLearner, SurrogateRobot, surrogate_robot
 
 CARRIED_S = 2.5
 """To the observer's place and back, in simulation: the tracker has to confirm that the robot stands there."""
@@ -42,7 +42,9 @@ class RobotTrial:
 
     def __init__(self, experiment: Experiment, durations: Durations, copies: CopyStore, trial: int) -> None:
         self._experiment, self._copies, self._trial = experiment, copies, trial
-        self._robots = {each.id: fast_robot(experiment, each, durations, trial) for each in experiment.robot}
+        self._robots = {
+            each.id: surrogate_robot(experiment, each, durations, trial) for each in experiment.robot
+        }
         self._watched_until_s = dict.fromkeys(self._robots, 0.0)
         self._due: dict[str, float] = {}
         """Observers at their places: when each visit ends."""
@@ -50,16 +52,16 @@ class RobotTrial:
 
     def run(self) -> TrialOutcome:
         """Until every learner has made the experiment's moves."""
-        learners = [each for each in self._robots.values() if isinstance(each, FastLearner)]
+        learners = [each for each in self._robots.values() if isinstance(each, SurrogateLearner)]
         while self._under_way(learners):
             self._step(min(self._active(learners), key=lambda each: each.t_s))
         best_paths = {each.settings.id: each.best_paths for each in learners}
         return TrialOutcome(self._trial, best_paths, tuple(self._copied))
 
-    def _under_way(self, learners: list[FastLearner]) -> bool:
+    def _under_way(self, learners: list[SurrogateLearner]) -> bool:
         return any(each.moves < self._experiment.run.moves for each in learners)
 
-    def _active(self, learners: list[FastLearner]) -> list[FastRobot]:
+    def _active(self, learners: list[SurrogateLearner]) -> list[SurrogateRobot]:
         """Who still has something to do: an expert as long as somebody may watch it."""
         moves, capacity = self._experiment.run.moves, self._experiment.learning.capacity
         wanted = {
@@ -70,11 +72,11 @@ class RobotTrial:
         return [
             each
             for each in self._robots.values()
-            if each.settings.id in wanted or (isinstance(each, FastLearner) and each.moves < moves)
+            if each.settings.id in wanted or (isinstance(each, SurrogateLearner) and each.moves < moves)
         ]
 
-    def _step(self, robot: FastRobot) -> None:
-        if not isinstance(robot, FastLearner):
+    def _step(self, robot: SurrogateRobot) -> None:
+        if not isinstance(robot, SurrogateLearner):
             robot.move()
         elif robot.settings.id in self._due:
             self._end_visit(robot)
@@ -83,7 +85,7 @@ class RobotTrial:
         else:
             robot.move()
 
-    def _may_visit(self, robot: FastLearner) -> bool:
+    def _may_visit(self, robot: SurrogateLearner) -> bool:
         """The conductor's rule: at the start and every so many tracks, until the memory is full."""
         watches = robot.settings.watches
         if not watches or len(robot.memory.remembered) >= robot.rules.capacity:
@@ -92,14 +94,14 @@ class RobotTrial:
         is_taken = max(self._watched_until_s[watches], self._watched_until_s[robot.settings.id]) > robot.t_s
         return due and not is_taken and watches not in self._due
 
-    def _begin_visit(self, robot: FastLearner) -> None:
+    def _begin_visit(self, robot: SurrogateLearner) -> None:
         robot.visits += 1
         robot.abandon()
         ends_s = robot.t_s + self._experiment.visits.duration_s + CARRIED_S
         self._due[robot.settings.id] = self._watched_until_s[robot.settings.watches] = ends_s
         robot.t_s = ends_s
 
-    def _end_visit(self, robot: FastLearner) -> None:
+    def _end_visit(self, robot: SurrogateLearner) -> None:
         """The demonstrator has caught up with the end of the visit by now: see what it did."""
         ends_s = self._due.pop(robot.settings.id)
         began_s = ends_s - self._experiment.visits.duration_s - CARRIED_S / 2
@@ -112,7 +114,7 @@ class RobotTrial:
         robot.begin_at_start(HEADING_AT_THE_START)
 
 
-def longest_drive(shown: Iterable[Shown], began_s: float, ended_s: float) -> tuple[Move, ...]:
+def longest_drive(shown: Iterable[ShownMoves], began_s: float, ended_s: float) -> tuple[Move, ...]:
     """The moves that were wholly seen between two times; of several journeys, those of the longest part."""
     parts: dict[int, list[Move]] = {}
     for move in shown:

@@ -15,7 +15,7 @@ from statistics import median
 from server.hubs.lockstep import LockstepHub
 from server.processes.supervisor import ProcessSpec, Supervisor
 from swarm.runtime.liveliness import Presence, claim
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.benchmarks.processes import resident_mib
 from tests.support.endpoints import free_endpoint
 from tests.support.swarm_runs import ROOT, experiment_text, learners, write_experiment
@@ -31,11 +31,11 @@ def agent_size() -> dict[str, float]:
         arguments = (str(file), "--connect", endpoint, "--lockstep", "--process", "a", "--robot", "r0")
         spec = ProcessSpec("a", "robot_agent", arguments)
         with (
-            Bus(BusSettings(endpoint, hub=True)) as bus,
+            Session(SessionSettings(endpoint, hub=True)) as session,
             Supervisor([spec], Path(directory) / "output") as supervisor,
         ):
-            claim(bus, Presence("server", "server", "here", 1))
-            hub = LockstepHub(bus, ["a"], 0.1, supervisor.check, print)
+            claim(session, Presence("server", "server", "here", 1))
+            hub = LockstepHub(session, ["a"], 0.1, supervisor.check, print)
             hub.start()
             for _ in range(TICKS):
                 hub.advance()

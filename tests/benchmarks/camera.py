@@ -14,7 +14,7 @@ import numpy as np
 
 from robot_agent.drivers.sim.rendering.camera import SimulatedCamera
 from robot_agent.drivers.sim.rendering.conditions import conditions
-from robot_agent.drivers.sim.rendering.scene import Body, Post, Rectangle, Scene
+from robot_agent.drivers.sim.rendering.scene import Post, Rectangle, Scene, SceneRobot
 from robot_agent.vision.camera_model import load_camera_model
 from swarm.geometry import Pose
 from tests.benchmarks.seeing import CALIBRATION
@@ -23,7 +23,7 @@ OBSERVER = Pose(1.14, 0.06, math.radians(135))
 ROOMS = (Rectangle(0.0, 0.0, 1.2, 1.2), Rectangle(1.2, 0.0, 2.4, 1.2))
 SCENE = Scene(
     ROOMS,
-    (Body(Pose(0.8, 0.4, 0.0), "red", (0.1, 0.0)), Body(Pose(0.3, 0.65, 0.0), "blue")),
+    (SceneRobot(Pose(0.8, 0.4, 0.0), "red", (0.1, 0.0)), SceneRobot(Pose(0.3, 0.65, 0.0), "blue")),
     (Post(0.3, 1.1, "orange"), Post(0.1, 0.6, "red", 0.02, 0.1)),
 )
 

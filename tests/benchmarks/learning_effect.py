@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from swarm.config.experiment import LearningSettings
-from tests.support.fast_moves import FastRobot, Kind, durations_in
+from tests.support.fast_moves import Kind, SurrogateRobot, durations_in
 from tests.support.swarm_runs import experiment_text, learners, run_server, write_experiment
 
 MOVES = 15_000
@@ -41,7 +41,7 @@ def curves(
     """The moves of evaluation, and the greedy path lengths (trial, evaluation)."""
     lengths = []
     for trial in range(trials):
-        robot = FastRobot(durations, rules, given=given, seed=1, trial=trial)
+        robot = SurrogateRobot(durations, rules, given=given, seed=1, trial=trial)
         robot.run(moves)
         lengths.append(list(robot.best_paths.values()))
     return list(robot.best_paths), np.array(lengths)

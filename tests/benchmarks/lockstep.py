@@ -27,8 +27,8 @@ from server.processes.cpu_affinity import available_cores, keeping_to, spread
 from server.processes.environment import socket_endpoint
 from server.processes.supervisor import ProcessSpec, Supervisor
 from swarm.runtime.liveliness import Presence, claim
-from swarm.runtime.lockstep import LockstepLink, patient
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.lockstep import LockstepNode, patient
+from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.benchmarks.processes import cpu_of
 
 MODULE = "tests.benchmarks.lockstep"
@@ -55,8 +55,8 @@ SCHEDULES = {
 
 def zenoh_worker(name: str, endpoint: str) -> None:
     """An agent process without agents."""
-    with Bus(patient(BusSettings(endpoint))) as bus:
-        LockstepLink(bus, name).run(no_step)
+    with Session(patient(SessionSettings(endpoint))) as session:
+        LockstepNode(session, name).run(no_step)
 
 
 def no_step(t_ns: int) -> None:
@@ -136,11 +136,11 @@ def measure(processes: int, rounds: int, ticks: int) -> dict[str, object]:
         directory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         endpoint = stack.enter_context(socket_endpoint())
         stack.enter_context(keeping_to(cores[0]))
-        bus = stack.enter_context(Bus(patient(BusSettings(endpoint, hub=True))))
-        claim(bus, Presence("server", "server", "here", 1))
+        session = stack.enter_context(Session(patient(SessionSettings(endpoint, hub=True))))
+        claim(session, Presence("server", "server", "here", 1))
         specs = zenoh_specs(endpoint, processes)
         agents = stack.enter_context(Supervisor(specs, directory / "zenoh", spread(processes, cores)))
-        hub = LockstepHub(bus, [spec.name for spec in specs], TICK_S, agents.check, print)
+        hub = LockstepHub(session, [spec.name for spec in specs], TICK_S, agents.check, print)
         hub.start()
         stack.callback(hub.finish)
         advances = {"zenoh": zenoh_advance(hub)}
@@ -209,8 +209,8 @@ def main() -> None:
     parser.add_argument("--ticks", type=int, default=200)
     arguments = parser.parse_args()
     if arguments.worker:
-        kind, *rest = arguments.worker
-        bare_worker(rest[0]) if kind == "bare" else zenoh_worker(rest[1], rest[0])
+        kind, *stop = arguments.worker
+        bare_worker(stop[0]) if kind == "bare" else zenoh_worker(stop[1], stop[0])
         sys.exit(0)
     print(json.dumps(measure(arguments.processes, arguments.rounds, arguments.ticks)))
 

@@ -22,7 +22,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from robot_agent.imitation.copying import NoCopy
-from robot_agent.offline.observation_session import rehearsal_experiment, rehearsals
+from robot_agent.offline.observation_session import observed_demonstrations, offline_experiment
 from swarm.config.experiment import Watching
 from swarm.learning.alignment import edit_distance
 
@@ -60,16 +60,16 @@ class Score:
 def score(condition: str, count: int, seed: int) -> Score:
     """Rehearse, and compare every copied list with the true one; no copy counts as an empty list."""
     profile, light, kind = condition.split("/")
-    experiment = rehearsal_experiment(Watching(profile), light)
+    experiment = offline_experiment(Watching(profile), light)
     edits, reasons = [], Counter[str]()
     wrong, seen = 0, 0.0
     began_s = time.process_time()
-    for rehearsed in rehearsals(experiment, kind, count, seed):
-        edits.append(edit_distance(rehearsed.copied_moves, list(map(int, rehearsed.demonstration.moves))))
-        wrong += rehearsed.copied_moves != rehearsed.moves_meanwhile
-        seen += len(rehearsed.watch.positions) / max(1, len(rehearsed.watch.looks))
-        if isinstance(rehearsed.copied, NoCopy):
-            reasons[rehearsed.copied.reason] += 1
+    for observed in observed_demonstrations(experiment, kind, count, seed):
+        edits.append(edit_distance(observed.copied_moves, list(map(int, observed.demonstration.moves))))
+        wrong += observed.copied_moves != observed.moves_meanwhile
+        seen += len(observed.watch.positions) / max(1, len(observed.watch.looks))
+        if isinstance(observed.copied, NoCopy):
+            reasons[observed.copied.reason] += 1
     shares = {"imperfect": 1 - edits.count(0) / count, "wrong": wrong / count}
     bounded, least, most = BARS[condition]
     return Score(

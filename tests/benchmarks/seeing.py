@@ -19,10 +19,10 @@ import numpy as np
 
 from robot_agent.drivers.sim.rendering.camera import SimulatedCamera, calibration_frames
 from robot_agent.drivers.sim.rendering.conditions import conditions
-from robot_agent.drivers.sim.rendering.scene import Body, Post, Rectangle, Scene
+from robot_agent.drivers.sim.rendering.scene import Post, Rectangle, Scene, SceneRobot
 from robot_agent.vision.camera_model import CameraModel, load_camera_model
 from robot_agent.vision.colour_calibration import learn_colour_table
-from robot_agent.vision.detector import PROFILES, NotSeen, Seer, Sighting
+from robot_agent.vision.detector import PROFILES, Detection, Detector, NotSeen
 from robot_agent.vision.frames import Frame
 from robot_agent.vision.skirt import SKIRT_RADIUS_M, half_angle_rad
 from swarm.geometry import Pose
@@ -42,18 +42,18 @@ class Look:
     range_m: float
     bearing_rad: float
     width_px: float
-    said: Sighting | NotSeen
+    said: Detection | NotSeen
 
 
 def make_pair(
     profile: str, condition: str, skirt: str, seed: int, pixel_format: str = "rgb565"
-) -> tuple[SimulatedCamera, Seer]:
-    """A camera and a seer whose colour table was learnt with that camera."""
+) -> tuple[SimulatedCamera, Detector]:
+    """A camera and a detector whose colour table was learnt with that camera."""
     model = load_camera_model(CALIBRATION).scaled(PROFILES[profile].width, PROFILES[profile].height)
     rng = np.random.default_rng(seed)
     camera = SimulatedCamera(model, conditions(condition), rng, pixel_format)
     frames = calibration_frames(camera, skirt, CALIBRATION_RANGES_M)
-    return camera, Seer(profile, model, learn_colour_table(frames, model, skirt))
+    return camera, Detector(profile, model, learn_colour_table(frames, model, skirt))
 
 
 def in_view(model: CameraModel, own: Pose, body: Pose, margin_px: float = 8.0) -> bool:
@@ -66,7 +66,7 @@ def in_view(model: CameraModel, own: Pose, body: Pose, margin_px: float = 8.0) -
 
 
 def look_at(
-    camera: SimulatedCamera, seer: Seer, own: Pose, scene: Scene, t_ns: int, turn_rad_s: float
+    camera: SimulatedCamera, detector: Detector, own: Pose, scene: Scene, t_ns: int, turn_rad_s: float
 ) -> Look:
     """Render the scene, whose first body is the demonstrator, and look for it."""
     model = camera.model
@@ -74,7 +74,7 @@ def look_at(
     range_m, bearing_rad = math.hypot(place.x_m, place.y_m), math.atan2(place.y_m, place.x_m)
     half_rad = half_angle_rad(range_m)
     width_px = model.column(bearing_rad - half_rad) - model.column(bearing_rad + half_rad)
-    said = seer.look(camera.render(t_ns, own, scene, turn_rad_s))
+    said = detector.look(camera.render(t_ns, own, scene, turn_rad_s))
     return Look(range_m, bearing_rad, width_px, said)
 
 
@@ -83,12 +83,12 @@ def scattered(
 ) -> Iterator[Look]:
     """Single frames: the demonstrator at 40 to 150 cm, at rest or moving, with another robot and a post."""
     for first in range(0, frames, FRAMES_OF_A_CAMERA):
-        camera, seer = make_pair(profile, condition, skirt, seed + first, pixel_format)
+        camera, detector = make_pair(profile, condition, skirt, seed + first, pixel_format)
         rng = np.random.default_rng([seed, first])
         for _ in range(min(FRAMES_OF_A_CAMERA, frames - first)):
-            seer.reset()
+            detector.reset()
             own, scene = random_scene(camera.model, skirt, rng)
-            yield look_at(camera, seer, own, scene, 0, float(rng.uniform(-0.2, 0.2)))
+            yield look_at(camera, detector, own, scene, 0, float(rng.uniform(-0.2, 0.2)))
 
 
 def random_scene(model: CameraModel, skirt: str, rng: np.random.Generator) -> tuple[Pose, Scene]:
@@ -104,8 +104,8 @@ def random_scene(model: CameraModel, skirt: str, rng: np.random.Generator) -> tu
         other = Pose(rng.uniform(0.06, 1.14), rng.uniform(0.06, 1.14), 0.0)
         post = Post(float(rng.uniform(0.03, 1.17)), 1.17, "orange")
         if _apart(model, own, body, (other, Pose(post.x_m, post.y_m, 0.0))):
-            others = (Body(other, "blue" if skirt != "blue" else "red"),)
-            return own, Scene(ROOMS, (Body(body, skirt, velocity), *others), (post,))
+            others = (SceneRobot(other, "blue" if skirt != "blue" else "red"),)
+            return own, Scene(ROOMS, (SceneRobot(body, skirt, velocity), *others), (post,))
 
 
 def _apart(model: CameraModel, own: Pose, body: Pose, others: tuple[Pose, ...]) -> bool:
@@ -125,7 +125,7 @@ def driving(profile: str, condition: str, skirt: str, frames: int, seed: int, tw
     """Drives at 10 cm/s and 5 frames a second among posts of the skirt's colour, the observer turning."""
     number = 0
     while number < frames:
-        camera, seer = make_pair(profile, condition, skirt, seed + number)
+        camera, detector = make_pair(profile, condition, skirt, seed + number)
         rng = np.random.default_rng([seed, number])
         path = list(drive(rng))
         posts = tuple(twin_post(skirt, path, rng) for _ in range(twins))
@@ -133,8 +133,8 @@ def driving(profile: str, condition: str, skirt: str, frames: int, seed: int, tw
             own = Pose(
                 *OBSERVER, math.atan2(body.y_m - OBSERVER[1], body.x_m - OBSERVER[0]) + rng.uniform(-0.1, 0.1)
             )
-            scene = Scene(ROOMS, (Body(body, skirt),), posts)
-            yield look_at(camera, seer, own, scene, step * FRAME_NS, 0.0)
+            scene = Scene(ROOMS, (SceneRobot(body, skirt),), posts)
+            yield look_at(camera, detector, own, scene, step * FRAME_NS, 0.0)
             number += 1
 
 
@@ -164,7 +164,9 @@ def drive(rng: np.random.Generator) -> Iterator[Pose]:
 
 def accuracy(looks: list[Look], model: CameraModel) -> dict[str, float]:
     """The figures that the issue names, from frames that got an answer."""
-    pairs = [(look, look.said) for look in looks if isinstance(look.said, Sighting) and not look.said.cut_off]
+    pairs = [
+        (look, look.said) for look in looks if isinstance(look.said, Detection) and not look.said.cut_off
+    ]
     ranges = np.array([look.range_m for look, _ in pairs])
     range_errors = np.array([said.range_m - look.range_m for look, said in pairs])
     bearing_errors = np.array([said.bearing_rad - look.bearing_rad for look, said in pairs])
@@ -172,7 +174,7 @@ def accuracy(looks: list[Look], model: CameraModel) -> dict[str, float]:
     gross = np.abs(widths) > 3
     px_m = ranges**2 / (2 * model.focal_px * SKIRT_RADIUS_M)
     return {
-        "answered": sum(isinstance(look.said, Sighting) for look in looks) / len(looks),
+        "answered": sum(isinstance(look.said, Detection) for look in looks) / len(looks),
         "answered_by_both_edges": len(pairs) / len(looks),
         "gross_errors": float(gross.mean()),
         "width_sd_px": float(widths.std()),
@@ -212,7 +214,7 @@ def is_wrong(look: Look) -> bool:
 
 def cost_ms(profile: str, skirt: str, frames: int) -> float:
     """Processor time of a look: the shortest for each of some frames (other processes disturb the rest)."""
-    camera, seer = make_pair(profile, "realistic", skirt, 1)
+    camera, detector = make_pair(profile, "realistic", skirt, 1)
     rng = np.random.default_rng(2)
     images: list[Frame] = []
     for _ in range(10):
@@ -221,9 +223,9 @@ def cost_ms(profile: str, skirt: str, frames: int) -> float:
     best = [math.inf] * len(images)
     for _ in range(frames):
         for number, image in enumerate(images):
-            seer.reset()
+            detector.reset()
             start = time.process_time()
-            seer.look(image)
+            detector.look(image)
             best[number] = min(best[number], time.process_time() - start)
     return 1e3 * sum(best) / len(best)
 
@@ -249,7 +251,7 @@ def main() -> None:
         **vars(options),
         **accuracy(looks, model),
         "twins_wrong": sum(is_wrong(look) for look in drives) / len(drives),
-        "twins_answered": sum(isinstance(look.said, Sighting) for look in drives) / len(drives),
+        "twins_answered": sum(isinstance(look.said, Detection) for look in drives) / len(drives),
         "ms_a_frame": cost_ms(options.profile, options.skirt, 20),
     }
     print(json.dumps({name: round(v, 7) if isinstance(v, float) else v for name, v in figures.items()}))

@@ -148,6 +148,9 @@ class BackendRig(Protocol):
     def run_to(self, t_ns: int) -> None:
         """Let the world's time pass up to `t_ns`."""
 
+    def close(self) -> None:
+        """Close what was opened."""
+
 
 def _seen_in(rig: BackendRig, seconds: int, t_ns: int) -> list[tuple[int, list[TrackedPose]]]:
     """What the backend gives at the ticks of some seconds, ten a second, with each tick's time."""

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import select
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -13,7 +16,14 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header
 from swarm.runtime.subscription import Received
 from tests.contracts.examiners import BACKEND_CHECKS, SECOND_NS, BackendRig
+from tests.support.tracked_swarm import LOOPBACK, free_udp_port, standing, tracked_experiment
+from tracker_bridge.backends.natnet import NatNetTracker
 from tracker_bridge.backends.sim import SimulatedTracker
+from tracker_bridge.backends.vicon import ViconTracker
+from tracker_bridge.emulators.interface import Emulator
+from tracker_bridge.emulators.natnet import NatNetEmulator
+from tracker_bridge.emulators.vicon import ViconEmulator
+from tracker_bridge.protocols.natnet import MULTICAST_GROUP, Version
 
 TRUTHS = {
     "a": pb.Truth(x_m=1.0, y_m=0.5, theta_rad=math.pi / 2),
@@ -37,17 +47,70 @@ class SimulatedRig:
         header = Header(1, self._sequence, t_ns)
         self._told.extend(Received(robot, header, truth) for robot, truth in TRUTHS.items())
 
+    def close(self) -> None:
+        """There is nothing to close."""
+
     def _take(self) -> list[Received[pb.Truth]]:
         told, self._told = self._told, []
         return told
 
 
-RIGS: list[Callable[[], BackendRig]] = [
-    SimulatedRig,
-]
+class EmulatedRig:
+    """A tracking system's emulator, and the backend that listens to it."""
+
+    tolerance_m = 1e-6
+    tolerance_rad = 1e-6
+
+    def __init__(self, backend: NatNetTracker | ViconTracker, emulator: Emulator) -> None:
+        self.backend = backend
+        self._emulator = emulator
+
+    def run_to(self, t_ns: int) -> None:
+        self._emulator.show(standing(t_ns), t_ns)
+        select.select(self.backend.receivers, [], [])
+
+    def close(self) -> None:
+        self._emulator.close()
+        self.backend.close()
+
+
+TURNED = TrackerSettings(interface=LOOPBACK, axes="x -z y", origin_m=(1.2, -0.4), turn_rad=0.7)
+"""A system whose y is up and whose origin and axes are not the arena's."""
+
+
+def vicon() -> EmulatedRig:
+    experiment = tracked_experiment(replace(TURNED, port=free_udp_port()))
+    backend = ViconTracker(experiment)
+    return EmulatedRig(backend, ViconEmulator(experiment, LOOPBACK, backend.port))
+
+
+def natnet(version: Version = (3, 0), group: str = "") -> EmulatedRig:
+    """A server and a client that have met."""
+    settings = replace(TURNED, server=LOOPBACK, port=free_udp_port(), multicast=group)
+    experiment = tracked_experiment(replace(settings, command_port=free_udp_port()))
+    backend, emulator = NatNetTracker(experiment), NatNetEmulator(experiment, LOOPBACK, version)
+    while backend.info is None or not backend.models.bodies:
+        backend.poses(0)
+        emulator.answer()
+    return EmulatedRig(backend, emulator)
+
+
+RIGS: dict[str, Callable[[], BackendRig]] = {
+    "simulated": SimulatedRig,
+    "vicon": vicon,
+    "natnet 2.5": partial(natnet, (2, 5)),
+    "natnet 2.9": partial(natnet, (2, 9)),
+    "natnet 3.0": natnet,
+    "natnet 4.1": partial(natnet, (4, 1)),
+    "natnet multicast": partial(natnet, (3, 0), MULTICAST_GROUP),
+}
 
 
 @pytest.mark.parametrize("check", BACKEND_CHECKS, ids=lambda check: check.__name__.lstrip("_"))
-@pytest.mark.parametrize("rig", RIGS, ids=lambda rig: rig.__name__)
-def test_backend_contract(rig: Callable[[], BackendRig], check: Callable[[BackendRig, int], None]) -> None:
-    check(rig(), SECOND_NS)
+@pytest.mark.parametrize("name", RIGS)
+def test_backend_contract(name: str, check: Callable[[BackendRig, int], None]) -> None:
+    rig = RIGS[name]()
+    try:
+        check(rig, SECOND_NS)
+    finally:
+        rig.close()

@@ -15,11 +15,11 @@ from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from tests.support.local_link import LocalLink
+from tests.support.local_node import LocalNode
 from tests.support.swarm_runs import experiment_text, learners, write_experiment
 from tracker_bridge.backends.sim import SimulatedTracker
 from tracker_bridge.bridge import Bridge
-from tracker_bridge.plausibility import Gate, GateSettings
+from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
 TICK_NS = NS_PER_S // 10
 
@@ -29,12 +29,12 @@ class Rig:
 
     def __init__(self, directory: Path, moves: int = 1000) -> None:
         experiment = Experiment.load(write_experiment(directory, experiment_text(learners(1), moves)))
-        self.link = LocalLink()
-        self.agent = Assembly(experiment, self.link, 0).agent("r0")
+        self.node = LocalNode()
+        self.agent = Assembly(experiment, self.node, 0).agent("r0")
         self.compartment = experiment.compartment(experiment.robot[0])
-        truths = self.link.subscribe(topics.TRUTH)
+        truths = self.node.subscribe(topics.TRUTH)
         tracker = SimulatedTracker(experiment.tracker, truths.take, lambda _: np.random.default_rng(1))
-        self._bridge = Bridge(tracker, Gate(GateSettings(13.0, 1.3)), self.link, ["r0"])
+        self._bridge = Bridge(tracker, Plausibility(PlausibilitySettings(13.0, 1.3)), self.node, ["r0"])
 
     def run(
         self,
@@ -44,20 +44,20 @@ class Rig:
         tracked: bool = True,
     ) -> list[tuple[str, Any]]:
         """Let time pass; what the robot published."""
-        before = len(self.link.published)
+        before = len(self.node.published)
         for _ in range(round(10 * seconds)):
-            self.link.t_ns += TICK_NS
+            self.node.t_ns += TICK_NS
             if phase is not None:
-                self.link.publish(topics.RUN_STATE, pb.RunState(phase=phase))
-            self.agent.step(self.link.t_ns)
+                self.node.publish(topics.RUN_STATE, pb.RunState(phase=phase))
+            self.agent.step(self.node.t_ns)
             if tracked:
-                self._bridge.step(self.link.t_ns)
+                self._bridge.step(self.node.t_ns)
         return [
-            (key, message) for key, message in self.link.published[before:] if key.startswith("robot/r0/")
+            (key, message) for key, message in self.node.published[before:] if key.startswith("robot/r0/")
         ]
 
     def order(self, kind: pb.Order.Kind.ValueType) -> None:
-        self.link.publish(topics.ORDER, pb.Order(kind=kind), "r0")
+        self.node.publish(topics.ORDER, pb.Order(kind=kind), "r0")
 
 
 def of(published: list[tuple[str, Any]], name: str) -> list[Any]:
@@ -143,7 +143,7 @@ def test_a_robot_that_is_carried_away_learns_nothing_from_it(rig: Rig) -> None:
     rig.run(30)
     state = 55
     x_m, y_m = rig.compartment.centre(state)
-    rig.link.publish(topics.CARRY, pb.Carry(x_m=x_m, y_m=y_m, theta_rad=1.0), "r0")
+    rig.node.publish(topics.CARRY, pb.Carry(x_m=x_m, y_m=y_m, theta_rad=1.0), "r0")
     carried = rig.run(60)
     assert [event.name for event in of(carried, "event")] == ["displaced"]
     moves = of(carried, "move")

@@ -10,7 +10,7 @@ from pathlib import Path
 from server.hubs.lockstep import LockstepHub
 from server.processes.supervisor import ProcessSpec, Supervisor
 from swarm.runtime.liveliness import Presence, claim
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.benchmarks.agent_size import agent_size, import_cost
 from tests.support.endpoints import free_endpoint
 from tests.support.swarm_runs import ROOT, experiment_text, learners, write_experiment
@@ -65,11 +65,11 @@ def test_the_base_install_runs_an_agent_for_ticks(tmp_path: Path) -> None:
     command = (str(experiment), "--connect", endpoint, "--lockstep", "--process", "a", "--robot", "r0")
     spec = ProcessSpec("a", "tests.support.run_file", (str(tmp_path / "base_install.py"), *command))
     with (
-        Bus(BusSettings(endpoint, hub=True)) as bus,
+        Session(SessionSettings(endpoint, hub=True)) as session,
         Supervisor([spec], tmp_path / "output") as supervisor,
     ):
-        claim(bus, Presence("server", "server", "here", 1))
-        hub = LockstepHub(bus, ["a"], 0.1, supervisor.check, print)
+        claim(session, Presence("server", "server", "here", 1))
+        hub = LockstepHub(session, ["a"], 0.1, supervisor.check, print)
         hub.start()
         for _ in range(20):
             hub.advance()

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot_agent.imitation.positions import ObservedPosition, position_from_sighting
+from robot_agent.imitation.positions import ObservedPosition, position_from_detection
 from robot_agent.offline import demonstrations
 from swarm.geometry import Compartment, Grid, Move, Pose, wrap_angle_rad
 
@@ -206,7 +206,7 @@ def _sighting(
     seen_rad = bearing_rad + rng.normal(0.0, conditions.bearing_sd_rad)
     if rng.random() < conditions.outliers:
         seen_m, seen_rad = rng.uniform(0.1, 1.6), rng.uniform(-0.4, 0.4)
-    return position_from_sighting(
+    return position_from_detection(
         Pose(x_m, y_m, facing_rad + bias_rad),
         conditions.camera_forward_m,
         max(seen_m, 0.05),

@@ -52,7 +52,7 @@ def durations_in(log: Path) -> dict[Kind, list[float]]:
     return dict(found)
 
 
-class FastRobot:
+class SurrogateRobot:
     """A learner whose moves take no driving."""
 
     def __init__(

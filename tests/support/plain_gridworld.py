@@ -10,9 +10,9 @@ from swarm.gridworld.condition import (
     AccessEachOther,
     AccessExpert,
     Condition,
-    EachOther,
-    Experienced,
-    Expert,
+    CopyEachOther,
+    CopyExperienced,
+    CopyExpert,
     GivenPaths,
 )
 from swarm.gridworld.splitmix import SplitMix64, stream_word
@@ -72,11 +72,11 @@ class PlainSimulation:
             case GivenPaths(paths):
                 for path in paths:
                     self.one.controller.memory.remember(path)
-            case Experienced(goal_reachings=goal_reachings):
+            case CopyExperienced(goal_reachings=goal_reachings):
                 while self.two.arrivals < goal_reachings:
                     self.two.step()
                 self.one.remember(self._demonstration(self.one, self.two, condition.teacher))
-            case Expert():
+            case CopyExpert():
                 self.one.remember(self._demonstration(self.one, self.two, condition.teacher))
             case AccessExpert(moves):
                 expert = QTable(condition.arena.grid.states)
@@ -88,9 +88,9 @@ class PlainSimulation:
 
     def step(self) -> None:
         teacher = self.condition.teacher
-        self._step(self.one, self.two, isinstance(teacher, Expert | Experienced | EachOther))
-        if isinstance(teacher, Experienced | EachOther | AccessEachOther):
-            self._step(self.two, self.one, isinstance(teacher, EachOther))
+        self._step(self.one, self.two, isinstance(teacher, CopyExpert | CopyExperienced | CopyEachOther))
+        if isinstance(teacher, CopyExperienced | CopyEachOther | AccessEachOther):
+            self._step(self.two, self.one, isinstance(teacher, CopyEachOther))
         self.taken += 1
         if self.taken % self.condition.evaluate_every == 0:
             self._evaluate(self.one)
@@ -101,14 +101,14 @@ class PlainSimulation:
         teacher = self.condition.teacher
         if not agent.step() or not watches:
             return
-        assert isinstance(teacher, Expert | Experienced | EachOther)
+        assert isinstance(teacher, CopyExpert | CopyExperienced | CopyEachOther)
         if agent.arrivals % teacher.every == 0:
             agent.remember(self._demonstration(agent, other, teacher))
 
     def _demonstration(
-        self, agent: PlainAgent, other: PlainAgent, teacher: Expert | Experienced | EachOther
+        self, agent: PlainAgent, other: PlainAgent, teacher: CopyExpert | CopyExperienced | CopyEachOther
     ) -> Sequence[int]:
-        if not isinstance(teacher, Expert):
+        if not isinstance(teacher, CopyExpert):
             return other.seen_moves(teacher.moves)
         path = self.condition.arena.expert_path
         first = agent.watching.integers(len(path) - teacher.moves + 1)

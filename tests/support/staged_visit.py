@@ -1,4 +1,4 @@
-"""A robot's visit on a rehearsal's stage: the real Visit, Watch and Seer, and rendered frames."""
+"""A robot's visit on an offline stage: the real visit, observer and detector, and rendered frames."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robot_agent.drivers.interfaces import Camera
 from robot_agent.drivers.kinematics import EpuckGeometry
 from robot_agent.imitation.visit import Eyes, Visit
 from robot_agent.offline.demonstrations import Demonstration, demonstrate
-from robot_agent.offline.observation_session import Stage, rehearsal_experiment
+from robot_agent.offline.observation_session import Stage, offline_experiment
 from swarm.config.experiment import Experiment
 from swarm.geometry import Move
 from swarm.learning.memory import ObservedPath
@@ -29,7 +29,7 @@ VISIT = 3
 
 def experiment() -> Experiment:
     """Visits of 20 s."""
-    plain = rehearsal_experiment()
+    plain = offline_experiment()
     return replace(plain, visits=replace(plain.visits, duration_s=20.0))
 
 
@@ -87,7 +87,7 @@ class StagedVisit:
         compartment = settings.compartment(settings.robot[0])
         return Eyes(
             self.camera,
-            self.stage.seer,
+            self.stage.detector,
             self.stage.robot.pose_at,
             settings.visits,
             settings.arena.cell_m,

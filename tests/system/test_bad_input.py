@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from swarm.runtime.liveliness import Presence, claim, present
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 from tests.support.swarm_runs import ROOT, experiment_text, write_experiment
 
@@ -88,7 +88,7 @@ def test_an_unknown_tracker_is_named(tmp_path: Path) -> None:
 
 def test_a_second_agent_of_one_id_is_refused_and_both_hosts_are_named(experiment: Path) -> None:
     endpoint = free_endpoint()
-    with Bus(BusSettings(endpoint, hub=True)) as hub, Bus(BusSettings(endpoint)) as first:
+    with Session(SessionSettings(endpoint, hub=True)) as hub, Session(SessionSettings(endpoint)) as first:
         claim(first, Presence("robot", "loner", "other-board", 1))
         while not present(hub, "robot"):
             pass

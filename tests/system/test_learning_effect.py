@@ -10,7 +10,7 @@ import pytest
 from swarm.config.experiment import LearningSettings
 from tests.benchmarks.learning_effect import LENGTH, curves
 from tests.conftest import SmallRun
-from tests.support.fast_moves import FastRobot, Kind, durations_in
+from tests.support.fast_moves import Kind, SurrogateRobot, durations_in
 from tests.support.swarm_runs import experiment_text, learners, messages, run_server, write_experiment
 
 RULES = LearningSettings()
@@ -64,7 +64,7 @@ def test_the_fast_model_agrees_with_the_full_simulation(
     text = experiment_text(learners(robots, given=True), moves, "[simulation]\nprocesses = 2")
     run_server(write_experiment(tmp_path, text), tmp_path / "run", "--seed", "11")
     log = tmp_path / "run" / "trial-000.mcap"
-    fast = [FastRobot(durations, RULES, given=True, seed=1, trial=trial) for trial in range(40)]
+    fast = [SurrogateRobot(durations, RULES, given=True, seed=1, trial=trial) for trial in range(40)]
     for robot in fast:
         robot.run(moves)
     seconds = [move.duration_s for _, move in messages(log, "move") if not move.blocked]

@@ -23,7 +23,7 @@ from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import Delivery, Topic, topic_of
 from swarm.runtime.liveliness import Presence, claim
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 from tests.support.swarm_runs import ROOT, experiment_text, learners, messages, run_server, write_experiment
 
@@ -52,11 +52,11 @@ class LiveSwarm:
         self.endpoint = free_endpoint()
         self._stack = stack
         self._started_ns = time.monotonic_ns()
-        self.bus = stack.enter_context(Bus(BusSettings(self.endpoint, hub=True)))
-        claim(self.bus, Presence("server", "server", "here", 1))
+        self.session = stack.enter_context(Session(SessionSettings(self.endpoint, hub=True)))
+        claim(self.session, Presence("server", "server", "here", 1))
         clock = scaled_clock(self._started_ns, SPEED)
         self.processes: list[subprocess.Popen[bytes]] = []
-        self.hub = LiveHub(self.bus, clock, Experiment.load(self.file), self.check, print)
+        self.hub = LiveHub(self.session, clock, Experiment.load(self.file), self.check, print)
         self._batches = 0
 
     def start(self, module: str, *arguments: str) -> subprocess.Popen[bytes]:
@@ -120,14 +120,14 @@ def test_a_killed_agent_goes_on_from_its_checkpoint(swarm: LiveSwarm) -> None:
     path = swarm.directory / "state" / "r0.json"
     saved = Checkpoint(path.parent, "r0", _run_in(path)).load()
     assert saved is not None
-    moves_saved = saved["brain"]["moves"]
+    moves_saved = saved["policy"]["moves"]
     assert moves_saved >= 4
     swarm.start_agent()
     item, move = next(
         found for found in swarm.received(topics.MOVE) if found[0].header.epoch not in first_epochs
     )
     assert move.number == moves_saved + 1, "it counts on"
-    before = saved["brain"]["q"][move.state][move.action]
+    before = saved["policy"]["q"][move.state][move.action]
     assert move.q_value - move.q_change == pytest.approx(before, abs=1e-12), "it learns on"
     assert item.header.sequence == 1, "a restart shows in the log as a new epoch that counts from 1"
 
@@ -139,8 +139,8 @@ def _run_in(path: Path) -> str:
 def test_corrupt_messages_are_counted_and_nothing_dies(swarm: LiveSwarm) -> None:
     swarm.start("tracker_bridge")
     swarm.start_agent()
-    with Bus(BusSettings(swarm.endpoint)) as stranger:
-        pose = stranger.sender(topics.POSE.key("r0"), Delivery.NEWEST)
+    with Session(SessionSettings(swarm.endpoint)) as stranger:
+        pose = stranger.publisher(topics.POSE.key("r0"), Delivery.NEWEST)
         epoch = time.time_ns()
         for number, (_, status) in enumerate(swarm.received(topics.STATUS), 1):
             if status.bad_messages:

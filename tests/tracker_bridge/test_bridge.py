@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
 from swarm.messages import topics
-from tests.support.local_link import LocalLink
+from tests.support.local_node import LocalNode
 from tracker_bridge.backends.interface import TrackedPose
 from tracker_bridge.bridge import Bridge
-from tracker_bridge.plausibility import Gate, GateSettings
+from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
 TICK_NS = NS_PER_S // 10
 
@@ -28,21 +28,23 @@ class Script:
 
 class Rig:
     def __init__(self, robots: Sequence[str] = ("a", "b")) -> None:
-        self.script, self.link = Script(), LocalLink()
-        self.bridge = Bridge(self.script, Gate(GateSettings(3.0, 3.0)), self.link, list(robots))
+        self.script, self.node = Script(), LocalNode()
+        self.bridge = Bridge(
+            self.script, Plausibility(PlausibilitySettings(3.0, 3.0)), self.node, list(robots)
+        )
 
     def step(self, number: int, *places: tuple[str, float]) -> list[tuple[str, object]]:
         """What is published at a tick at which the tracker saw robots at these x."""
-        before = len(self.link.published)
+        before = len(self.node.published)
         t_ns = number * TICK_NS
         self.script.next = [TrackedPose(robot, Pose(x_m, 1.0, 0.0), t_ns) for robot, x_m in places]
         self.bridge.step(t_ns)
-        return self.link.published[before:]
+        return self.node.published[before:]
 
 
 def test_each_robot_gets_its_own_pose_with_the_time_of_capture() -> None:
     rig = Rig()
-    own = rig.link.subscribe(topics.POSE, "b")
+    own = rig.node.subscribe(topics.POSE, "b")
     published = rig.step(3, ("a", 0.5), ("b", 1.5))
     assert [key for key, _ in published] == ["robot/a/pose", "robot/b/pose"]
     (received,) = own.take()

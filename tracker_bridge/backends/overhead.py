@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,12 +12,12 @@ import numpy as np
 from swarm.clock import NS_PER_S
 from swarm.errors import UserError
 from swarm.geometry import Pose
-from tracker_bridge.backends.interface import TrackedPose
+from tracker_bridge.backends.interface import Backend, Setup, TrackedPose, TrackingSystem
 from tracker_bridge.overhead.arena_view import ArenaView, PlanePose
 from tracker_bridge.overhead.frames import Frame, FrameSource, is_device, open_frames
 from tracker_bridge.overhead.settings import Calibration, CameraSettings, RobotTag, load_settings
 from tracker_bridge.overhead.tag_tracking import TagTracker
-from tracker_bridge.overhead.tags import TagDetector, TagFamily
+from tracker_bridge.overhead.tags import Tag, TagDetector, TagFamily
 
 HAND_OVER_NS = NS_PER_S // 5
 """A robot in two views is told by one camera until that has not seen it for so long: two cameras disagree by
@@ -51,7 +51,7 @@ class OverheadTracker:
             (frame.captured_t_ns, number, tracked)
             for number, camera in enumerate(self.cameras)
             for frame in camera.source.frames(t_ns)
-            for tracked in self._seen(camera, frame)
+            for tracked in self._seen(camera, frame, t_ns)
         ]
         seen.sort(key=lambda each: each[:2])
         return [tracked for _, number, tracked in seen if self._tells(number, tracked)]
@@ -61,17 +61,29 @@ class OverheadTracker:
         for camera in self.cameras:
             camera.source.close()
 
-    def _seen(self, camera: Camera, frame: Frame) -> list[TrackedPose]:
+    def _seen(self, camera: Camera, frame: Frame, t_ns: int) -> list[TrackedPose]:
         tags = camera.tracker.track(frame.picture)
         if not tags:
             return []
         quads = np.array([tag.corners for tag in tags])
         places = camera.view.level_poses(quads, self.height_m, self.side_m)
         return [
-            TrackedPose(self.tags[tag.id].robot, _robot_pose(place, self.tags[tag.id]), frame.captured_t_ns)
+            self._tracked(tag, place, frame.captured_t_ns, t_ns)
             for tag, place in zip(tags, places, strict=True)
             if place.residual_m < LARGEST_RESIDUAL * self.side_m
         ]
+
+    def _tracked(self, tag: Tag, place: PlanePose, captured_t_ns: int, t_ns: int) -> TrackedPose:
+        worn = self.tags[tag.id]
+        return TrackedPose(
+            worn.robot,
+            _robot_pose(place, worn),
+            captured_t_ns,
+            received_t_ns=t_ns,
+            residual_m=place.residual_m,
+            quality=tag.agreement,
+            height_m=self.height_m,
+        )
 
     def _tells(self, camera: int, tracked: TrackedPose) -> bool:
         teller, last_ns = self._told_by.get(tracked.robot, (camera, -1))
@@ -90,13 +102,12 @@ def _robot_pose(place: PlanePose, tag: RobotTag) -> Pose:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[OverheadTracker]:
-    """The tracker that a settings file describes, for as long as the block runs."""
-    tracker = _made(path)
-    try:
+def _opened(setup: Setup) -> Iterator[Backend]:
+    file = setup.experiment.tracker.file
+    if not file:
+        raise UserError('[tracker] backend is "overhead", but no file says what tags and cameras there are')
+    with closing(_made(Path(file))) as tracker:
         yield tracker
-    finally:
-        tracker.close()
 
 
 def _made(path: Path) -> OverheadTracker:
@@ -117,3 +128,6 @@ def _camera(path: Path, settings: CameraSettings, family: TagFamily) -> Camera:
         )
     source = settings.source if is_device(settings.source) else str(path.parent / settings.source)
     return Camera(open_frames(source, settings.delay_s), view, TagTracker(TagDetector(family)))
+
+
+SYSTEM = TrackingSystem(_opened)

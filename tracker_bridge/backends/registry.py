@@ -1,32 +1,28 @@
-"""The tracker backends by the name that an experiment file gives them."""
+"""Which tracking systems there are: the entry points of the group `swarm.trackers`, of any package."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
+from importlib.metadata import EntryPoint, entry_points
 
-from swarm.config.experiment import Experiment
 from swarm.errors import UserError, nearest
-from swarm.learning.random import spawned_generator
-from swarm.messages import topics
-from swarm.runtime.node import Link
-from tracker_bridge.backends.interface import Backend
-from tracker_bridge.backends.sim import SimulatedTracker
+from tracker_bridge.backends.interface import TrackingSystem
 
-MakeBackend = Callable[[Experiment, Link, int], Backend]
+GROUP = "swarm.trackers"
 
 
-def _simulated(experiment: Experiment, link: Link, trial: int) -> Backend:
-    truths = link.subscribe(topics.TRUTH)
-    generator = partial(spawned_generator, experiment.run.seed, "", trial, component="tracker")
-    return SimulatedTracker(experiment.tracker, truths.take, lambda robot: generator(robot=robot))
+def system_named(name: str) -> TrackingSystem:
+    """The tracking system that `[tracker] backend` names; UserError lists what there is."""
+    known = _known()
+    if not known:
+        raise UserError(f"no tracking system is installed ({GROUP} is empty): install this package again")
+    if name not in known:
+        there_is = ", ".join(sorted(known))
+        raise UserError(f"[tracker] backend is {name!r}; {nearest(name, known)} (there is: {there_is})")
+    system = known[name].load()
+    if not isinstance(system, TrackingSystem):
+        raise UserError(f"the entry {known[name].value!r} of {GROUP} is no TrackingSystem")
+    return system
 
 
-BACKENDS: dict[str, MakeBackend] = {"sim": _simulated}
-"""[tracker] backend: a new tracking system adds one line."""
-
-
-def backend_named(name: str) -> MakeBackend:
-    if name not in BACKENDS:
-        raise UserError(f"[tracker] backend is {name!r}; {nearest(name, BACKENDS)}")
-    return BACKENDS[name]
+def _known() -> dict[str, EntryPoint]:
+    return {entry.name: entry for entry in entry_points(group=GROUP)}

@@ -1,1 +1,1 @@
-"""Tracking systems that are not there: a laboratory rehearses with them."""
+"""Tracking systems played by this project, so that a laboratory can rehearse."""

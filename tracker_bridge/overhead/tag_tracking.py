@@ -67,26 +67,27 @@ class TagTracker:
         found |= self._search(picture, self._near(picture, found), found)
         found |= self._search(picture, self._far(picture, found), found)
         self._remember(found)
-        return [Tag(tag, quad) for tag, quad in sorted(found.items())]
+        return [found[tag] for tag in sorted(found)]
 
-    def _follow(self, picture: Grey) -> dict[int, Floats]:
+    def _follow(self, picture: Grey) -> dict[int, Tag]:
         seen = {tag: each.predicted() for tag, each in self._followed.items() if not each.missed}
         if not seen:
             return {}
         guesses = np.array(list(seen.values()))
         quads = aligned_quads(picture, guesses, REACH_PX, self.detector.family.modules)
         numbers = [self.detector.family.ids.index(tag) for tag in seen]
-        reads = self.detector.book.agreement(picture, quads, numbers) > LEAST_AGREEMENT
-        kept = reads & _same_size(quads, guesses)
-        return {tag: quad for tag, quad, keep in zip(seen, quads, kept, strict=True) if keep}
+        agreement = self.detector.book.agreement(picture, quads, numbers)
+        kept = np.flatnonzero((agreement > LEAST_AGREEMENT) & _same_size(quads, guesses))
+        tags = list(seen)
+        return {tags[each]: Tag(tags[each], quads[each], float(agreement[each])) for each in kept}
 
-    def _near(self, picture: Grey, found: dict[int, Floats]) -> list[Window]:
+    def _near(self, picture: Grey, found: dict[int, Tag]) -> list[Window]:
         lost = [
             each for tag, each in self._followed.items() if tag not in found and each.missed < NEAR_FRAMES
         ]
         return [Window.around(each.quad, NEAR_SIDES * _size_px(each.quad), picture) for each in lost]
 
-    def _far(self, picture: Grey, found: dict[int, Floats]) -> list[Window]:
+    def _far(self, picture: Grey, found: dict[int, Tag]) -> list[Window]:
         """The whole picture at first, then a strip at each frame in which a tag is long missing."""
         if not self._followed:
             return busy_windows(picture)
@@ -99,16 +100,18 @@ class TagTracker:
         strip = picture[top : int((number + 1) * height + STRIP_OVERLAP_PX / 2)]
         return [window.lowered(top) for window in busy_windows(strip)]
 
-    def _search(self, picture: Grey, windows: list[Window], found: dict[int, Floats]) -> dict[int, Floats]:
+    def _search(self, picture: Grey, windows: list[Window], found: dict[int, Tag]) -> dict[int, Tag]:
         tags = self.detector.find(picture, windows)  # the surest first, which counts if an id is there twice
-        return {tag.id: tag.corners for tag in reversed(tags) if tag.id not in found}
+        return {tag.id: tag for tag in reversed(tags) if tag.id not in found}
 
-    def _remember(self, found: dict[int, Floats]) -> None:
+    def _remember(self, found: dict[int, Tag]) -> None:
         for tag, each in self._followed.items():
             each.missed += tag not in found
-        for tag, quad in found.items():
-            last = self._followed.get(tag)
-            self._followed[tag] = _Followed(quad, None if last is None or last.missed else last.quad)
+        for tag in found.values():
+            last = self._followed.get(tag.id)
+            self._followed[tag.id] = _Followed(
+                tag.corners, None if last is None or last.missed else last.quad
+            )
 
 
 def _size_px(quad: Floats) -> float:

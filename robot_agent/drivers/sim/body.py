@@ -53,7 +53,7 @@ class SimulatedBody:
         self.contacts = 0
         """How often the body has run into a wall, up to the last full slot."""
         self._geometry = geometry
-        self._track_m = geometry.track_m
+        self._track_m = geometry.wheel_base_m
         self._rng = rng
         left_error, right_error = rng.normal(0.0, faults.gain_error_sd, 2).tolist()
         self._left_step_m = geometry.step_m * (1.0 + left_error)

@@ -9,14 +9,14 @@ import numpy as np
 
 from robot_agent.drivers.sim.rendering.camera import SimulatedCamera, calibration_frames
 from robot_agent.drivers.sim.rendering.conditions import conditions
-from robot_agent.drivers.sim.rendering.scene import Body, Rectangle, Scene
+from robot_agent.drivers.sim.rendering.scene import Rectangle, Scene, SceneRobot
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.frames import Frame
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose, wrap_angle_rad
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
 
 BUILT_IN_MODEL = CameraModel(320, 240, math.radians(53.0), radial=(-0.08, 0.01), gamma=2.2)
 """An e-puck's camera with a field of view mid-way between the published values."""
@@ -36,13 +36,13 @@ class SimulatedRobotCamera:
         model: CameraModel,
         conditions_name: str,
         truth_at: Callable[[int], Pose],
-        link: Link,
+        node: Node,
         robot: str,
         rng: np.random.Generator,
     ) -> None:
         self._camera = SimulatedCamera(model, conditions(conditions_name), rng)
         self._truth_at = truth_at
-        self._views = link.subscribe(topics.VIEW, robot)
+        self._views = node.subscribe(topics.VIEW, robot)
         self._view: pb.View | None = None
         self._shown_ns = -1
         self._velocities: list[tuple[float, float]] = []
@@ -75,7 +75,7 @@ class SimulatedRobotCamera:
     def _scene(self, view: pb.View) -> Scene:
         walls = tuple(Rectangle(wall.west_m, wall.south_m, wall.east_m, wall.north_m) for wall in view.walls)
         bodies = tuple(
-            Body(Pose(body.x_m, body.y_m, body.theta_rad), body.skirt, velocity)
+            SceneRobot(Pose(body.x_m, body.y_m, body.theta_rad), body.skirt, velocity)
             for body, velocity in zip(view.bodies, self._velocities, strict=True)
         )
         return Scene(walls, bodies)

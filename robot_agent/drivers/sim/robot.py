@@ -15,7 +15,7 @@ from robot_agent.vision.camera_model import CameraModel
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.runtime.node import Link
+from swarm.runtime.node import Node
 
 TICKS_REMEMBERED = 64
 """What a camera shows comes three exchanges late at most, of at most ten ticks each."""
@@ -24,11 +24,11 @@ TICKS_REMEMBERED = 64
 class SimulatedRobot:
     """A simulated body that publishes its truth whenever its wheels are read: once a tick."""
 
-    def __init__(self, body: SimulatedBody, link: Link, robot: str) -> None:
+    def __init__(self, body: SimulatedBody, node: Node, robot: str) -> None:
         self.body = body
-        self._link = link
+        self._node = node
         self._robot = robot
-        self._carries = link.subscribe(topics.CARRY, robot)
+        self._carries = node.subscribe(topics.CARRY, robot)
         self._truths: deque[tuple[int, Pose]] = deque(maxlen=TICKS_REMEMBERED)
 
     def drive(self, speeds: WheelSpeeds, t_ns: int) -> WheelSpeeds:
@@ -41,7 +41,7 @@ class SimulatedRobot:
             self.body.place(Pose(to.x_m, to.y_m, to.theta_rad))
         truth = self.body.truth(t_ns)
         self._truths.append((t_ns, truth))
-        self._link.publish(
+        self._node.publish(
             topics.TRUTH,
             pb.Truth(
                 x_m=truth.x_m, y_m=truth.y_m, theta_rad=truth.theta_rad, wall_contacts=self.body.contacts
@@ -72,7 +72,7 @@ class SimulatedDriver:
             compartment,
             parts.generator("body"),
         )
-        self.body = SimulatedRobot(body, parts.link, parts.robot.id)
+        self.body = SimulatedRobot(body, parts.node, parts.robot.id)
 
     def camera(self, model: CameraModel) -> Camera:
         """A rendered camera; what it takes to render is loaded here and not before."""
@@ -81,4 +81,4 @@ class SimulatedDriver:
         parts = self._parts
         light = parts.experiment.camera.conditions
         generator = parts.generator("camera")
-        return SimulatedRobotCamera(model, light, self.body.truth_at, parts.link, parts.robot.id, generator)
+        return SimulatedRobotCamera(model, light, self.body.truth_at, parts.node, parts.robot.id, generator)

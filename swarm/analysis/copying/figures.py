@@ -20,7 +20,7 @@ from swarm.analysis.copying.drawing import (
     square_around,
 )
 from swarm.analysis.copying.errors import ErrorKind, differences
-from swarm.analysis.copying.paths import RememberedPath, Seen
+from swarm.analysis.copying.paths import LoggedPath, Seen
 from swarm.analysis.copying.ratios import plot_ratios
 from swarm.analysis.copying.summary import Copying, chosen_copies, least_enacted, most_enacted
 from swarm.analysis.plots import COLOURS, GREY
@@ -47,14 +47,14 @@ def copying_figures(copying: Copying) -> dict[str, Figure]:
     return found
 
 
-def colour_of(path: RememberedPath) -> str:
+def colour_of(path: LoggedPath) -> str:
     """Blue for a perfect copy, orange for a wrong one, grey for what was given or not judged."""
     if path.error is None:
         return UNJUDGED
     return PERFECT if path.error is ErrorKind.PERFECT else WRONG
 
 
-def source_text(path: RememberedPath) -> str:
+def source_text(path: LoggedPath) -> str:
     """How the robot came by a path."""
     if path.error is None:
         return "given" if path.source == "given" else "copied"
@@ -69,7 +69,7 @@ _WITH = {
 }
 
 
-def plot_paths(paths: Sequence[RememberedPath], title: str) -> Figure:
+def plot_paths(paths: Sequence[LoggedPath], title: str) -> Figure:
     """Remembered paths side by side with their R and replays."""
     figure = Figure(figsize=(max(2.9 * len(paths), 5.8), 4.4), layout="constrained")
     figure.suptitle(title, fontsize=13, fontweight="bold", x=0.01, ha="left")
@@ -86,7 +86,7 @@ def plot_paths(paths: Sequence[RememberedPath], title: str) -> Figure:
     return figure
 
 
-def _caption(axes: Axes, path: RememberedPath) -> None:
+def _caption(axes: Axes, path: LoggedPath) -> None:
     axes.set_title(
         f"{_replays(path)}, R {path.ratio:.2f}", fontsize=11, fontweight="bold", loc="left", pad=20
     )
@@ -99,15 +99,15 @@ def _small(axes: Axes) -> dict[str, Any]:
     return {"fontsize": 8.5, "transform": axes.transAxes, "va": "bottom"}
 
 
-def _replays(path: RememberedPath) -> str:
+def _replays(path: LoggedPath) -> str:
     return f"{path.replays:,} {'replay' if path.replays == 1 else 'replays'}"
 
 
-def _name(path: RememberedPath) -> str:
+def _name(path: LoggedPath) -> str:
     return f"{path.robot}, trial {path.trial}, path {path.path}"
 
 
-def plot_copies(paths: Sequence[RememberedPath], copying: Copying) -> Figure:
+def plot_copies(paths: Sequence[LoggedPath], copying: Copying) -> Figure:
     """What the demonstrator really did on the left, what was perceived on the right, two copies a row."""
     rows = (len(paths) + 1) // 2
     figure = Figure(figsize=(11.6, 0.75 + 3.7 * rows), layout="constrained")
@@ -119,7 +119,7 @@ def plot_copies(paths: Sequence[RememberedPath], copying: Copying) -> Figure:
     return figure
 
 
-def _draw_case(case: SubFigure, path: RememberedPath, seen: Seen) -> None:
+def _draw_case(case: SubFigure, path: LoggedPath, seen: Seen) -> None:
     real, copied = path.real or (), path.copied or ()
     wrong = differences(copied, real)
     title = f"{_name(path)}: {_replays(path)}, R {path.ratio:.2f}"

@@ -18,7 +18,7 @@ FIRST_R = 1.0
 
 
 @dataclass(frozen=True)
-class RememberedPath:
+class LoggedPath:
     """One path of one robot's memory. `real` and `copied` are the moves of the whole demonstration, of
     which `moves` is the stretch that was remembered; both are None if no copying error is known, as for a
     path that was given.
@@ -65,7 +65,7 @@ class RememberedPath:
         return vars(self) | moves | {"copied": self.copied and list(self.copied)} | error
 
 
-def read_paths(tables: Mapping[str, Path]) -> list[RememberedPath]:
+def read_paths(tables: Mapping[str, Path]) -> list[LoggedPath]:
     """From the tables of paths, replays, moves and, where there were visits, copying errors."""
     paths = pl.read_parquet(tables["paths"]).unique(OF_PATH, keep="last", maintain_order=True)
     replays = pl.read_parquet(tables["replays"]).sort("receive_t_ns", maintain_order=True)
@@ -78,7 +78,7 @@ def read_paths(tables: Mapping[str, Path]) -> list[RememberedPath]:
     return [_path(row) for row in joined.iter_rows(named=True)]
 
 
-def path_table(paths: Sequence[RememberedPath]) -> pl.DataFrame:
+def path_table(paths: Sequence[LoggedPath]) -> pl.DataFrame:
     """A row for each path."""
     moves = pl.List(pl.Int64)
     schema: dict[str, Any] = {
@@ -115,9 +115,9 @@ def _judged(tables: Mapping[str, Path]) -> pl.DataFrame:
 _NO_MOVES = {"true_moves": pl.List(pl.Int64), "copied_moves": pl.List(pl.Int64)}
 
 
-def _path(row: Mapping[str, Any]) -> RememberedPath:
+def _path(row: Mapping[str, Any]) -> LoggedPath:
     origin = {name: row[name] for name in ("log", "condition", "robot", "seed", "trial", "path", "visit")}
-    return RememberedPath(
+    return LoggedPath(
         **origin,
         moves=tuple(row["moves"]),
         source=row["source"],
@@ -134,7 +134,7 @@ Seen = tuple[tuple[float, float], ...]
 """(cells to the east, cells to the south) of where the demonstration began."""
 
 
-def seen_positions(tables: Mapping[str, Path], path: RememberedPath, cell_m: float) -> Seen:
+def seen_positions(tables: Mapping[str, Path], path: LoggedPath, cell_m: float) -> Seen:
     """The positions within the demonstration, in cells; none if the log lacks the observation."""
     if not {"segments", "smoothed"} <= tables.keys():
         return ()
@@ -148,7 +148,7 @@ def seen_positions(tables: Mapping[str, Path], path: RememberedPath, cell_m: flo
     return tuple(((x_m - west_m) / cell_m, (north_m - y_m) / cell_m) for x_m, y_m in places.iter_rows())
 
 
-def _of_visit(table: Path, path: RememberedPath) -> pl.DataFrame:
+def _of_visit(table: Path, path: LoggedPath) -> pl.DataFrame:
     return pl.scan_parquet(table).filter(log=path.log, robot=path.robot, visit=path.visit).collect()
 
 

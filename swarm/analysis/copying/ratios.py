@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from scipy.optimize import isotonic_regression
 
-from swarm.analysis.copying.paths import FIRST_R, OF_PATH, RememberedPath
+from swarm.analysis.copying.paths import FIRST_R, OF_PATH, LoggedPath
 from swarm.analysis.plots import GREY
 from swarm.statistics.samples import FloatArray
 
@@ -27,19 +27,19 @@ TOP = 1.04
 class RatioLine:
     """R of a path: (times,) numbers of the robot's moves, and the R that held from then on."""
 
-    path: RememberedPath
+    path: LoggedPath
     moves: list[int]
     ratios: list[float]
 
 
-def ratio_lines(paths: Sequence[RememberedPath], replays: pl.DataFrame) -> list[RatioLine]:
+def ratio_lines(paths: Sequence[LoggedPath], replays: pl.DataFrame) -> list[RatioLine]:
     """R from the moment when a path was remembered until the robot's last move."""
     ordered = replays.sort("receive_t_ns", maintain_order=True)
     by_path = ordered.partition_by(OF_PATH, maintain_order=True, as_dict=True)
     return [_line(path, by_path.get((path.log, path.robot, path.path))) for path in paths]
 
 
-def _line(path: RememberedPath, replays: pl.DataFrame | None) -> RatioLine:
+def _line(path: LoggedPath, replays: pl.DataFrame | None) -> RatioLine:
     moves, ratios = [path.known_from], [FIRST_R]
     if replays is not None:
         moves += (replays["started_move"] + replays["moves"] - 1).to_list()
@@ -60,7 +60,7 @@ def apart(heights: Sequence[float], least: float, top: float) -> FloatArray:
 
 
 def plot_ratios(
-    paths: Sequence[RememberedPath], replays: pl.DataFrame, colour_of: Callable[[RememberedPath], str]
+    paths: Sequence[LoggedPath], replays: pl.DataFrame, colour_of: Callable[[LoggedPath], str]
 ) -> Figure:
     """A row for each of the first robots, a line for each of its paths, labelled at its end."""
     lines = ratio_lines(paths, replays)
@@ -86,7 +86,7 @@ def _note(robots: int) -> str:
     return text if robots <= ROBOTS_SHOWN else f"{text} The first {ROBOTS_SHOWN} of {robots} learners."
 
 
-def _draw(axes: Axes, lines: Sequence[RatioLine], colour_of: Callable[[RememberedPath], str]) -> None:
+def _draw(axes: Axes, lines: Sequence[RatioLine], colour_of: Callable[[LoggedPath], str]) -> None:
     labels = apart([line.ratios[-1] for line in lines], LABEL_APART * TOP, TOP - 0.02)
     end = max(1, *(line.moves[-1] for line in lines))
     for line, height in zip(lines, labels, strict=True):

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from swarm.analysis.copying.drawing import moves_text
-from swarm.analysis.copying.paths import RememberedPath
+from swarm.analysis.copying.paths import LoggedPath
 from swarm.analysis.copying.summary import Copying
 from swarm.markdown import table, text_number
 
@@ -108,7 +108,7 @@ def _miscopied(copying: Copying) -> str:
     return f"{text}\n\n{table(head, _rows(paths[:_SHOWN]))}"
 
 
-def _rows(paths: Sequence[RememberedPath]) -> list[list[str]]:
+def _rows(paths: Sequence[LoggedPath]) -> list[list[str]]:
     return [
         [
             path.robot,

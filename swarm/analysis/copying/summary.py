@@ -12,7 +12,7 @@ from typing import Any
 import polars as pl
 
 from swarm.analysis.copying.errors import ErrorKind
-from swarm.analysis.copying.paths import RememberedPath, Seen, read_paths, seen_positions
+from swarm.analysis.copying.paths import LoggedPath, Seen, read_paths, seen_positions
 
 SHOWN = 4
 
@@ -21,11 +21,11 @@ SHOWN = 4
 class Copying:
     """Everything about copying in some runs; `failures` counts the reasons of visits that taught nothing."""
 
-    paths: Sequence[RememberedPath]
+    paths: Sequence[LoggedPath]
     replays: pl.DataFrame
     visits: int
     failures: Mapping[str, int]
-    seen: Mapping[RememberedPath, Seen]
+    seen: Mapping[LoggedPath, Seen]
     """Where the observer believed that the demonstrator was, for the copies of `chosen_copies`."""
 
     def __bool__(self) -> bool:
@@ -33,17 +33,17 @@ class Copying:
         return bool(self.paths or self.visits)
 
     @property
-    def enacted(self) -> list[RememberedPath]:
+    def enacted(self) -> list[LoggedPath]:
         """From the most to the least enacted; of equals, the higher R first."""
         return sorted(self.paths, key=lambda path: (-path.replays, -path.ratio))
 
     @property
-    def miscopied(self) -> list[RememberedPath]:
+    def miscopied(self) -> list[LoggedPath]:
         """From the most to the least enacted."""
         return [path for path in self.enacted if path.error not in (None, ErrorKind.PERFECT)]
 
     @property
-    def perfect(self) -> list[RememberedPath]:
+    def perfect(self) -> list[LoggedPath]:
         return [path for path in self.enacted if path.error is ErrorKind.PERFECT]
 
     def errors(self) -> dict[ErrorKind, int]:
@@ -67,17 +67,17 @@ class Copying:
         }
 
 
-def most_enacted(copying: Copying) -> list[RememberedPath]:
+def most_enacted(copying: Copying) -> list[LoggedPath]:
     """Figure 27: from the most enacted on, at most half of all paths."""
     return copying.enacted[: min(SHOWN, (len(copying.paths) + 1) // 2)]
 
 
-def least_enacted(copying: Copying) -> list[RememberedPath]:
+def least_enacted(copying: Copying) -> list[LoggedPath]:
     """Figure 28: from the least enacted on, at most half of all paths (a single path is both)."""
     return copying.enacted[::-1][: min(SHOWN, max(1, len(copying.paths) // 2))]
 
 
-def chosen_copies(paths: Sequence[RememberedPath]) -> list[RememberedPath]:
+def chosen_copies(paths: Sequence[LoggedPath]) -> list[LoggedPath]:
     """Figure 29: of paths in the order of enactment, the two most enacted copies, then the two worst."""
     judged = [path for path in paths if path.error]
     wrong = [path for path in judged[SHOWN // 2 :] if path.edit_distance]
@@ -85,7 +85,7 @@ def chosen_copies(paths: Sequence[RememberedPath]) -> list[RememberedPath]:
     return judged[: SHOWN // 2] + worst[: SHOWN // 2]
 
 
-def reinforcement(paths: Sequence[RememberedPath]) -> dict[str, Any]:
+def reinforcement(paths: Sequence[LoggedPath]) -> dict[str, Any]:
     """What learning made of some paths: how often they were replayed, and their R at the end."""
     ratios = [path.ratio for path in paths]
     return {
@@ -120,7 +120,7 @@ def _visits(tables: Mapping[str, Path]) -> tuple[int, dict[str, int]]:
     return done.height, dict(sorted(vain.items(), key=lambda item: (-item[1], item[0])))
 
 
-def _brief(path: RememberedPath) -> dict[str, Any]:
+def _brief(path: LoggedPath) -> dict[str, Any]:
     names = ("condition", "robot", "seed", "trial", "path", "source", "replays", "known_for", "ratio")
     error = {"error": path.error and str(path.error), "edit_distance": path.edit_distance}
     return {name: getattr(path, name) for name in names} | {"moves": list(path.moves)} | error

@@ -15,7 +15,7 @@ from swarm.paper.claim import (
     NoDifference,
     ShortestPathMoves,
 )
-from swarm.paper.verdicts.curve_tests import LEVEL, Comparison, compare, compare_samples, effect_between, span
+from swarm.paper.verdicts.curve_tests import LEVEL, CurveTests, compare, compare_samples, effect_between, span
 from swarm.paper.verdicts.evidence import Evidence
 from swarm.paper.verdicts.finding import Finding, Tested, Verdict
 from swarm.paper.verdicts.wording import compared, in_steps
@@ -35,12 +35,12 @@ def finds_shortest_sooner(check: FindsShortestSooner, evidence: Evidence) -> Fin
     effect = paired_effect_size(later, sooner)
     medians = [_median(evidence.arrivals(condition)) for condition in (check.sooner, check.later)]
     why = f"median {medians[0]} against {medians[1]}"
-    if found.honest.favours:
+    if found.family_wise.favours:
         verdict = Verdict.HOLDS
     else:
-        decided = evidence.enough_runs or found.honest.opposes
+        decided = evidence.enough_runs or found.family_wise.opposes
         verdict = Verdict.DOES_NOT_HOLD if decided else Verdict.UNDECIDED
-    return Finding(compared(check), verdict, why, found.paper, found.honest, effect, "steps earlier")
+    return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, "steps earlier")
 
 
 def finds_shortest_by(check: FindsShortestBy, evidence: Evidence) -> Finding:
@@ -73,54 +73,57 @@ UNIT = "moves shorter"
 
 
 def better(check: Better, evidence: Evidence) -> Finding:
-    """The paper's test has to find the claimed window, and the honest test a part of it."""
+    """The paper's test has to find the claimed window, and the family-wise test a part of it."""
     good, bad = evidence.tested(check.better), evidence.tested(check.worse)
     found = compare(good, bad, evidence.seed)
     last_step = float(good.times[-1])
     claimed = Window(float(check.start_step or 0), float(check.end_step or last_step))
     verdict, why = _ruling(check, found, claimed, last_step, evidence.enough_runs)
     effect = effect_between(good, bad, claimed.start, claimed.end)
-    return Finding(compared(check), verdict, why, found.paper, found.honest, effect, UNIT)
+    return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, UNIT)
 
 
 def no_difference(check: NoDifference, evidence: Evidence) -> Finding:
-    """The honest test must find nothing, with runs enough to find something."""
+    """The family-wise test must find nothing, with runs enough to find something."""
     first, second = evidence.tested(check.first), evidence.tested(check.second)
     found = compare(first, second, evidence.seed)
     verdict, why = _same_ruling(found, evidence.enough_runs)
     effect = effect_between(first, second, 0, float(first.times[-1]))
-    return Finding(compared(check), verdict, why, found.paper, found.honest, effect, UNIT)
+    return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, UNIT)
 
 
-def _ruling(check: Better, found: Comparison, claimed: Window, last_step: float, enough_runs: bool) -> Ruling:
+def _ruling(check: Better, found: CurveTests, claimed: Window, last_step: float, enough_runs: bool) -> Ruling:
     if last_step < claimed.end:
         return Verdict.UNDECIDED, f"the runs end at {in_steps(last_step)}"
     if not found.paper.favours:
         return _not_found(found, enough_runs)
-    if not any(_overlap(window, claimed) for window in found.honest.windows):
+    if not any(_overlap(window, claimed) for window in found.family_wise.windows):
         verdict = Verdict.IN_PART if enough_runs else Verdict.UNDECIDED
-        return verdict, "the paper's test finds a gain, the honest test none at the time claimed"
+        return verdict, "the paper's test finds a gain, the family-wise test none at the time claimed"
     missed = _missed(check, found.paper)
     if missed:
         return (Verdict.IN_PART if enough_runs else Verdict.UNDECIDED), f"better, but {missed}"
-    if check.end_step is None and _longer(found.honest.against) > _longer(found.honest.windows):
+    if check.end_step is None and _longer(found.family_wise.against) > _longer(found.family_wise.windows):
         return Verdict.IN_PART, "better at first, worse for longer"
-    return Verdict.HOLDS, "found by the paper's test, confirmed by the honest one"
+    return Verdict.HOLDS, "found by the paper's test, confirmed by the family-wise one"
 
 
-def _not_found(found: Comparison, enough_runs: bool) -> Ruling:
-    if found.honest.opposes:
+def _not_found(found: CurveTests, enough_runs: bool) -> Ruling:
+    if found.family_wise.opposes:
         return Verdict.DOES_NOT_HOLD, "the opposite is significant"
     return (Verdict.DOES_NOT_HOLD if enough_runs else Verdict.UNDECIDED), "not significant"
 
 
-def _same_ruling(found: Comparison, enough_runs: bool) -> Ruling:
-    if found.honest.smallest_p <= LEVEL:
-        return Verdict.DOES_NOT_HOLD, "the honest test finds a difference"
+def _same_ruling(found: CurveTests, enough_runs: bool) -> Ruling:
+    if found.family_wise.smallest_p <= LEVEL:
+        return Verdict.DOES_NOT_HOLD, "the family-wise test finds a difference"
     if not enough_runs:
         return Verdict.UNDECIDED, "none was found, but so few runs would hardly show one"
     if found.paper.favours or found.paper.opposes:
-        return Verdict.IN_PART, "the honest test finds none; the paper's does, at some of its many points"
+        return (
+            Verdict.IN_PART,
+            "the family-wise test finds none; the paper's does, at some of its many points",
+        )
     return Verdict.HOLDS, "neither test finds a difference"
 
 
@@ -147,15 +150,15 @@ def higher_ratio(check: HigherRatio, evidence: Evidence) -> Finding:
     """One path against each of the others, in one family: a "point" of the tests for each other path."""
     higher, lower = _pairs(check, evidence)
     found = compare(lower, higher, evidence.seed, in_time=False)
-    beaten = round(sum(window.duration + 1 for window in found.honest.windows))
+    beaten = round(sum(window.duration + 1 for window in found.family_wise.windows))
     others = len(check.lower)
     why = (
         f"R of {check.higher.name} {higher.values.mean():.3f}, of the others at most "
         f"{lower.values.mean(axis=0).max():.3f}; significantly above {beaten} of {others}"
     )
     effect = effect_between(lower, higher, 0, others)
-    verdict = _verdict(beaten, others, evidence.enough_runs or found.honest.smallest_p <= LEVEL)
-    return Finding(compared(check), verdict, why, found.paper, found.honest, effect, "higher")
+    verdict = _verdict(beaten, others, evidence.enough_runs or found.family_wise.smallest_p <= LEVEL)
+    return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, "higher")
 
 
 def _verdict(beaten: int, others: int, decided: bool) -> Verdict:

@@ -1,4 +1,4 @@
-"""Two curves under the paper's test and the honest one, at 5 %."""
+"""Two curves under the paper's test and the family-wise one, at 5 %."""
 
 from __future__ import annotations
 
@@ -20,32 +20,32 @@ SHORTEST_POINTS = 3
 
 
 PAPER_TEST = "paired t-test at each point"
-HONEST_TEST = "max-T sign-flip test over all points"
+FAMILY_WISE_TEST = "max-T sign-flip test over all points"
 
 
 @dataclass(frozen=True)
-class Comparison:
+class CurveTests:
     """`better` against `worse`, of the same runs; a window is in favour where `better` is smaller."""
 
     paper: Tested
-    honest: Tested
+    family_wise: Tested
 
 
-def compare(better: Curves, worse: Curves, seed: int, in_time: bool = True) -> Comparison:
+def compare(better: Curves, worse: Curves, seed: int, in_time: bool = True) -> CurveTests:
     """Both tests at every point; PairingError if the curves cannot be paired.
 
     If the points are not `in_time`, each stands for itself: no gap is overlooked, no stretch too short.
     """
     pointwise = pointwise_t_test(worse, better)
     rng = spawned_generator(seed, f"{better.name} {worse.name}", 0, "claims", "sign flips")
-    honest = max_t_test(worse, better, rng)
-    return Comparison(
+    family_wise = max_t_test(worse, better, rng)
+    return CurveTests(
         _tested(PAPER_TEST, pointwise.p, pointwise.t, better.times, in_time),
-        _tested(HONEST_TEST, honest.p, honest.direction, better.times, in_time),
+        _tested(FAMILY_WISE_TEST, family_wise.p, family_wise.direction, better.times, in_time),
     )
 
 
-def compare_samples(smaller: Sample, larger: Sample, seed: int) -> Comparison:
+def compare_samples(smaller: Sample, larger: Sample, seed: int) -> CurveTests:
     """Both tests of one number a run, of which `smaller` is claimed to have the smaller."""
     one, other = (
         Curves(sample.name, np.zeros(1), sample.values[:, None], sample.replicates)

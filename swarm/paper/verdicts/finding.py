@@ -22,7 +22,7 @@ class Verdict(Enum):
 class Tested:
     """One test of a comparison: where it is significant in the claim's favour and against it.
 
-    `smallest_p` is the smallest p value of all points; of the honest test, that of the whole comparison.
+    `smallest_p` is the smallest p value of all points; of the family-wise test, that of the whole comparison.
     """
 
     name: str
@@ -43,13 +43,13 @@ class Tested:
 
 @dataclass(frozen=True)
 class Finding:
-    """A comparison in words, the paper's test, the honest test, the effect, and what follows."""
+    """A comparison in words, the paper's test, the family-wise test, the effect, and what follows."""
 
     compared: str
     verdict: Verdict
     why: str
     paper_test: Tested | None = None
-    honest_test: Tested | None = None
+    family_wise_test: Tested | None = None
     effect: EffectSize | None = None
     effect_unit: str = ""
 

@@ -1,6 +1,6 @@
 """The verdict on each comparison of a claim, and on the claim.
 
-A claim holds if the paper's own test finds what the paper says and the honest test confirms it; in part,
+A claim holds if the paper's own test finds what the paper says and the family-wise test confirms it; in part,
 if only some of that is so. One that is not found at the paper's number of runs does not hold; with fewer
 runs that may be a matter of too little data, and it cannot be decided.
 """

@@ -12,7 +12,7 @@ from robot_agent.drivers.kinematics import EpuckGeometry, WheelSpeeds
 def test_forward_and_turning_speed_become_wheel_speeds() -> None:
     speeds = EpuckGeometry().wheel_speeds(0.1288, 0.0)
     assert (speeds.left_steps_per_s, speeds.right_steps_per_s) == pytest.approx((1000.0, 1000.0))
-    spin = EpuckGeometry(track_m=0.0515).wheel_speeds(0.0, 1.0)
+    spin = EpuckGeometry(wheel_base_m=0.0515).wheel_speeds(0.0, 1.0)
     assert (spin.left_steps_per_s, spin.right_steps_per_s) == pytest.approx((-199.92, 199.92), abs=0.02)
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from robot_agent.drivers.sim.rendering.camera import SceneCamera, SimulatedCamera
 from robot_agent.drivers.sim.rendering.conditions import conditions
-from robot_agent.drivers.sim.rendering.scene import Body, Post, Rectangle, Scene
+from robot_agent.drivers.sim.rendering.scene import Post, Rectangle, Scene, SceneRobot
 from robot_agent.vision.camera_model import load_camera_model
 from robot_agent.vision.pixels import frame_pixels
 from robot_agent.vision.skirt import half_angle_rad
@@ -34,9 +34,13 @@ def view(scene: Scene, turn_rate_rad_s: float = 0.0, name: str = "clean") -> NDA
     return frame_pixels(camera(name).render(0, OBSERVER, scene, turn_rate_rad_s)).astype(np.int64)
 
 
-def body(ahead_m: float, left_m: float, skirt: str = "red", velocity: tuple[float, float] = (0, 0)) -> Body:
+def body(
+    ahead_m: float, left_m: float, skirt: str = "red", velocity: tuple[float, float] = (0, 0)
+) -> SceneRobot:
     """A robot seen from the observer's camera."""
-    return Body(Pose(OBSERVER.x_m + MODEL.forward_m + ahead_m, OBSERVER.y_m + left_m, 0.0), skirt, velocity)
+    return SceneRobot(
+        Pose(OBSERVER.x_m + MODEL.forward_m + ahead_m, OBSERVER.y_m + left_m, 0.0), skirt, velocity
+    )
 
 
 def is_red(pixels: NDArray[np.int64]) -> NDArray[np.bool_]:
@@ -70,9 +74,9 @@ def test_a_near_robot_hides_a_far_one_whatever_their_order() -> None:
 
 
 def test_the_observer_does_not_see_itself_and_things_behind_it_are_not_shown() -> None:
-    behind = Body(Pose(OBSERVER.x_m - 0.07, OBSERVER.y_m, 0.0), "red")
+    behind = SceneRobot(Pose(OBSERVER.x_m - 0.07, OBSERVER.y_m, 0.0), "red")
     empty = view(Scene((ROOM,)))
-    assert np.array_equal(view(Scene((ROOM,), (Body(OBSERVER, "red"), behind))), empty)
+    assert np.array_equal(view(Scene((ROOM,), (SceneRobot(OBSERVER, "red"), behind))), empty)
 
 
 def test_a_robot_at_the_border_is_partly_shown() -> None:
@@ -86,7 +90,7 @@ def test_a_robot_at_the_border_is_partly_shown() -> None:
 
 def test_walls_are_white_and_hide_what_is_behind_them() -> None:
     beyond = Rectangle(1.2, 0.0, 2.4, 1.2)
-    pixels = view(Scene((ROOM, beyond), (Body(Pose(1.5, 0.6, 0.0), "red"),)))
+    pixels = view(Scene((ROOM, beyond), (SceneRobot(Pose(1.5, 0.6, 0.0), "red"),)))
     wall = pixels[HORIZON - 3, 100:220]
     assert not is_red(pixels)[HORIZON].any()
     assert wall.min() > 150
@@ -95,7 +99,7 @@ def test_walls_are_white_and_hide_what_is_behind_them() -> None:
 
 def test_who_stands_outside_a_corner_looks_in() -> None:
     outside = Pose(1.25, -0.05, math.radians(135))
-    scene = Scene((ROOM,), (Body(Pose(0.8, 0.4, 0.0), "red"),))
+    scene = Scene((ROOM,), (SceneRobot(Pose(0.8, 0.4, 0.0), "red"),))
     assert is_red(frame_pixels(camera().render(0, outside, scene)).astype(np.int64))[HORIZON].any()
 
 

@@ -34,7 +34,7 @@ def test_drives_an_exact_arc() -> None:
     geometry, robot = EpuckGeometry(), body()
     sent = robot.drive(geometry.wheel_speeds(0.05, 0.5), SECOND_NS)
     left_m, right_m = sent.left_steps_per_s * geometry.step_m, sent.right_steps_per_s * geometry.step_m
-    turn = (right_m - left_m) / geometry.track_m
+    turn = (right_m - left_m) / geometry.wheel_base_m
     radius_m = 0.5 * (left_m + right_m) / turn
     end = robot.truth(SECOND_NS + 2_340_000_000)
     expected = (1.6 + radius_m * math.sin(2.34 * turn), 2.6 + radius_m * (1 - math.cos(2.34 * turn)))

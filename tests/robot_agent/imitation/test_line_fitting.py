@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robot_agent.imitation.line_fitting import fit_line, fit_segments, merge, running_median, snap, split
-from robot_agent.imitation.positions import Floats, Sightings
+from robot_agent.imitation.positions import Floats, Trajectory
 from robot_agent.imitation.segments import Segment
 from swarm.geometry import Move
 
@@ -23,9 +23,9 @@ def corner(noise_m: float = 0.0) -> Floats:
     return xy_m + np.random.default_rng(1).normal(0.0, noise_m, xy_m.shape) if noise_m else xy_m
 
 
-def sightings(xy_m: Floats) -> Sightings:
+def trajectory(xy_m: Floats) -> Trajectory:
     t_ns = np.arange(len(xy_m), dtype=np.int64)
-    return Sightings(t_ns, xy_m, np.tile(1e-4 * np.eye(2), (len(xy_m), 1, 1)))
+    return Trajectory(t_ns, xy_m, np.tile(1e-4 * np.eye(2), (len(xy_m), 1, 1)))
 
 
 def test_split_finds_the_corner() -> None:
@@ -46,7 +46,7 @@ def test_merge_joins_neighbours_in_one_direction() -> None:
 
 
 def test_segments_meet_at_the_intersection() -> None:
-    east, north = fit_segments(sightings(corner(0.005)), CELL_M)
+    east, north = fit_segments(trajectory(corner(0.005)), CELL_M)
     assert east.length_m == pytest.approx(0.24, abs=0.01)
     assert north.turn_rad == pytest.approx(math.pi / 2, abs=0.15)
     assert [snap(segment, CELL_M) for segment in (east, north)] == [(Move.E, 2), (Move.N, 1)]
@@ -62,7 +62,7 @@ def test_snap_to_the_nearest_heading_and_length(move: Move) -> None:
 
 def test_there_and_back_is_two_segments() -> None:
     xy_m = np.concatenate((np.linspace((0, 0), (0.24, 0), 20), np.linspace((0.24, 0), (0, 0), 20)))
-    assert [snap(segment, CELL_M) for segment in fit_segments(sightings(xy_m), CELL_M)] == [
+    assert [snap(segment, CELL_M) for segment in fit_segments(trajectory(xy_m), CELL_M)] == [
         (Move.E, 2),
         (Move.W, 2),
     ]
@@ -76,9 +76,9 @@ def test_median_removes_a_single_bad_position() -> None:
 
 @pytest.mark.parametrize("count", [0, 1])
 def test_too_few_positions_for_a_line(count: int) -> None:
-    assert fit_segments(sightings(corner()[:count]), CELL_M) == ()
+    assert fit_segments(trajectory(corner()[:count]), CELL_M) == ()
 
 
 def test_identical_positions_end_in_a_segment_without_length() -> None:
-    segments = fit_segments(sightings(np.full((9, 2), 0.4)), CELL_M)
+    segments = fit_segments(trajectory(np.full((9, 2), 0.4)), CELL_M)
     assert [segment.length_m for segment in segments] == [0.0]

@@ -12,14 +12,19 @@ import pytest
 from robot_agent.drivers.sim.rendering.scene import Scene
 from robot_agent.imitation.observer import FASTEST_TURN_RAD_PER_S, Watch
 from robot_agent.offline.demonstrations import Demonstration, demonstrate
-from robot_agent.offline.observation_session import Rehearsed, Stage, rehearsal_experiment, rehearsals
-from robot_agent.vision.detector import Sighting
+from robot_agent.offline.observation_session import (
+    ObservedDemonstration,
+    Stage,
+    observed_demonstrations,
+    offline_experiment,
+)
+from robot_agent.vision.detector import Detection
 from robot_agent.vision.frames import Frame
 from swarm.config.experiment import Watching
 from swarm.geometry import Move, Pose, wrap_angle_rad
 
 TICK_NS = 100_000_000
-EXPERIMENT = rehearsal_experiment()
+EXPERIMENT = offline_experiment()
 GRID = EXPERIMENT.compartment(EXPERIMENT.robot[0]).grid
 ACROSS = (Move.NE,) * 5
 
@@ -30,17 +35,17 @@ def across() -> Demonstration:
 
 
 @pytest.fixture(scope="module")
-def followed() -> Rehearsed:
+def followed() -> ObservedDemonstration:
     return Stage(EXPERIMENT, np.random.default_rng(2)).watch(across())
 
 
-def test_a_frame_every_fifth_of_a_second(followed: Rehearsed) -> None:
+def test_a_frame_every_fifth_of_a_second(followed: ObservedDemonstration) -> None:
     ticks = len(followed.demonstration.track)
     assert len(followed.watch.looks) == followed.watch.expected_frames == pytest.approx(ticks / 2, abs=1)
     assert followed.watch.failed == ""
 
 
-def test_the_demonstrator_stays_in_view(followed: Rehearsed) -> None:
+def test_the_demonstrator_stays_in_view(followed: ObservedDemonstration) -> None:
     """Its bearing from the observer's place changes by more than a field of view; it is followed."""
     place = EXPERIMENT.observers_place(EXPERIMENT.robot[0])
     track = followed.demonstration.track
@@ -49,12 +54,12 @@ def test_the_demonstrator_stays_in_view(followed: Rehearsed) -> None:
     assert followed.copied_moves == tuple(map(int, ACROSS))
 
 
-def test_positions_lie_where_the_demonstrator_was(followed: Rehearsed) -> None:
+def test_positions_lie_where_the_demonstrator_was(followed: ObservedDemonstration) -> None:
     errors_m = []
-    for number, looked in enumerate(followed.watch.looks):
-        if looked.position and not (isinstance(looked.answer, Sighting) and looked.answer.cut_off):
+    for number, observed in enumerate(followed.watch.looks):
+        if observed.position and not (isinstance(observed.answer, Detection) and observed.answer.cut_off):
             true = followed.demonstration.track[2 * number]
-            errors_m.append(math.dist((looked.position.x_m, looked.position.y_m), (true.x_m, true.y_m)))
+            errors_m.append(math.dist((observed.position.x_m, observed.position.y_m), (true.x_m, true.y_m)))
     assert len(errors_m) > 50
     assert float(np.median(errors_m)) < 0.01
     assert max(errors_m) < 0.05
@@ -76,7 +81,7 @@ def test_a_late_frame_is_put_where_the_turning_observer_looked_then() -> None:
     stage, shown = Stage(EXPERIMENT, np.random.default_rng(2)), across()
     stage.shown = stage.scenes(shown)
     began_ns = stage.settle()
-    watch = Watch(Late(stage), stage.seer, stage.robot.pose_at, began_ns, 0.1 * len(shown.track), 5.0)
+    watch = Watch(Late(stage), stage.detector, stage.robot.pose_at, began_ns, 0.1 * len(shown.track), 5.0)
     stage.run(watch, began_ns, len(shown.track))
     errors_m = []
     for position in watch.positions:
@@ -101,7 +106,7 @@ class Turning:
 def test_it_looks_to_both_sides_for_a_robot_that_it_does_not_see() -> None:
     stage = Stage(EXPERIMENT, np.random.default_rng(3))
     began_ns = stage.settle()
-    turning = Turning(Watch(stage.camera, stage.seer, stage.robot.pose_at, began_ns, 15.0, 5.0), [])
+    turning = Turning(Watch(stage.camera, stage.detector, stage.robot.pose_at, began_ns, 15.0, 5.0), [])
     headings_rad = []
 
     def empty(tick: int) -> Scene:
@@ -118,7 +123,7 @@ def test_it_looks_to_both_sides_for_a_robot_that_it_does_not_see() -> None:
 
 def test_without_a_pose_it_takes_no_frame_and_stands() -> None:
     stage = Stage(EXPERIMENT, np.random.default_rng(3))
-    watch = Watch(stage.camera, stage.seer, stage.robot.pose_at, 0, 10.0, 5.0)
+    watch = Watch(stage.camera, stage.detector, stage.robot.pose_at, 0, 10.0, 5.0)
     assert [watch.step(None, tick * TICK_NS) for tick in range(20)] == [0.0] * 20
     assert watch.looks == []
 
@@ -155,7 +160,7 @@ def test_a_faulty_camera_ends_the_watch(word: str, failed: str) -> None:
     stage = Stage(EXPERIMENT, np.random.default_rng(3))
     stage.shown = stage.scenes(across())
     began_ns = stage.settle()
-    watch = Watch(Faulty(stage, word), stage.seer, stage.robot.pose_at, began_ns, len(word) / 5, 5.0)
+    watch = Watch(Faulty(stage, word), stage.detector, stage.robot.pose_at, began_ns, len(word) / 5, 5.0)
     stage.run(watch, began_ns, 2 * len(word))
     assert watch.failed == failed
     assert watch.ended(began_ns + 2 * len(word) * TICK_NS)
@@ -164,14 +169,14 @@ def test_a_faulty_camera_ends_the_watch(word: str, failed: str) -> None:
 @pytest.mark.parametrize("kind", ["random", "expert"])
 def test_rendered_demonstrations_are_copied(kind: str) -> None:
     """12 of the benchmark's (tests/benchmarks/rendered_copying.py), which allows one list in a hundred."""
-    for rehearsed in rehearsals(EXPERIMENT, kind, 12, seed=1):
-        assert rehearsed.copied_moves == tuple(map(int, rehearsed.demonstration.moves))
+    for observed in observed_demonstrations(EXPERIMENT, kind, 12, seed=1):
+        assert observed.copied_moves == tuple(map(int, observed.demonstration.moves))
 
 
 def test_the_papers_way_copies_worse() -> None:
     """Small frames, counted pixels and regression lines: many lists are wrong, and few are refused."""
-    experiment = rehearsal_experiment(Watching.PAPER)
-    shown = list(rehearsals(experiment, "random", 20, seed=1))
+    experiment = offline_experiment(Watching.PAPER)
+    shown = list(observed_demonstrations(experiment, "random", 20, seed=1))
     perfect = sum(each.copied_moves == tuple(map(int, each.demonstration.moves)) for each in shown)
     assert 0 < perfect < 20
     assert sum(bool(each.copied_moves) for each in shown) >= 15

@@ -1,4 +1,4 @@
-"""The ledger: a copied path can be traced back to the frames that it comes from."""
+"""Provenance: a copied path can be traced back to the frames that it comes from."""
 
 from __future__ import annotations
 

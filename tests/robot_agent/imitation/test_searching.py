@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robot_agent.imitation.observer import SEARCH_AFTER_NS, SWEEP_RAD, Search
-from robot_agent.vision.detector import NotSeen, Reason, Sighting
+from robot_agent.vision.detector import Detection, NotSeen, Reason
 
 LATE_NS = SEARCH_AFTER_NS + 1
 
@@ -14,8 +14,8 @@ def lost(t_ns: int, reason: Reason = Reason.NOT_SEEN) -> NotSeen:
     return NotSeen(t_ns, reason)
 
 
-def seen(t_ns: int) -> Sighting:
-    return Sighting(t_ns, 0.5, 0.0, ((1e-6, 0.0), (0.0, 1e-6)), 10.0, 20.0)
+def seen(t_ns: int) -> Detection:
+    return Detection(t_ns, 0.5, 0.0, ((1e-6, 0.0), (0.0, 1e-6)), 10.0, 20.0)
 
 
 def test_for_a_second_it_goes_on_as_before() -> None:

@@ -7,20 +7,20 @@ import math
 import numpy as np
 import pytest
 
-from robot_agent.imitation.demonstration import Rest
-from robot_agent.imitation.positions import Floats, Sightings
+from robot_agent.imitation.demonstration import Stop
+from robot_agent.imitation.positions import Floats, Trajectory
 from robot_agent.imitation.segments import Vertex, find_vertices, from_chord, segments_between
 from robot_agent.imitation.smoothing import Smoothed
 
 CELL_M = 0.12
 
 
-def seen(xy_m: Floats) -> tuple[Sightings, Smoothed]:
+def seen(xy_m: Floats) -> tuple[Trajectory, Smoothed]:
     frames = len(xy_m)
     t_s = 0.2 * np.arange(frames, dtype=np.float64)
-    sightings = Sightings((t_s * 1e9).astype(np.int64), xy_m, np.tile(1e-4 * np.eye(2), (frames, 1, 1)))
+    trajectory = Trajectory((t_s * 1e9).astype(np.int64), xy_m, np.tile(1e-4 * np.eye(2), (frames, 1, 1)))
     velocity_m_s = np.zeros((frames, 2))
-    return sightings, Smoothed(t_s, xy_m, velocity_m_s, np.tile(1e-4 * np.eye(4), (frames, 1, 1)))
+    return trajectory, Smoothed(t_s, xy_m, velocity_m_s, np.tile(1e-4 * np.eye(4), (frames, 1, 1)))
 
 
 def line(start: tuple[float, float], end: tuple[float, float], frames: int = 8) -> Floats:
@@ -29,14 +29,14 @@ def line(start: tuple[float, float], end: tuple[float, float], frames: int = 8) 
 
 def test_a_corner_without_a_stop_is_a_bend() -> None:
     xy_m = np.concatenate((line((0, 0), (0.12, 0)), line((0.12, 0), (0.12, 0.12))))
-    vertices = find_vertices(*seen(xy_m), [Rest(0, 0), Rest(15, 15)], CELL_M)
+    vertices = find_vertices(*seen(xy_m), [Stop(0, 0), Stop(15, 15)], CELL_M)
     assert [vertex.stopped for vertex in vertices] == [True, False, True]
     assert vertices[1].xy_m == pytest.approx([0.12, 0.0])
 
 
 def test_a_straight_drive_has_no_bend() -> None:
     xy_m = line((0, 0), (0.17, 0.17)) + np.random.default_rng(1).normal(0, 0.01, (8, 2))
-    assert len(find_vertices(*seen(xy_m), [Rest(0, 0), Rest(7, 7)], CELL_M)) == 2
+    assert len(find_vertices(*seen(xy_m), [Stop(0, 0), Stop(7, 7)], CELL_M)) == 2
 
 
 def test_turns_and_lengths() -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robot_agent.imitation.positions import Floats, Sightings
+from robot_agent.imitation.positions import Floats, Trajectory
 from robot_agent.imitation.smoothing import ACCELERATION_NOISE_M2_S3, FIRST_SPEED_SD_M_S, smooth
 
 
-def sightings(xy_m: Floats, sd_m: float, period_s: float = 0.2) -> Sightings:
+def trajectory(xy_m: Floats, sd_m: float, period_s: float = 0.2) -> Trajectory:
     t_ns = (np.arange(len(xy_m)) * period_s * 1e9).astype(np.int64)
-    return Sightings(t_ns, xy_m, np.tile(sd_m**2 * np.eye(2), (len(xy_m), 1, 1)))
+    return Trajectory(t_ns, xy_m, np.tile(sd_m**2 * np.eye(2), (len(xy_m), 1, 1)))
 
 
 def test_equals_the_batch_least_squares_solution() -> None:
@@ -29,7 +29,7 @@ def test_equals_the_batch_least_squares_solution() -> None:
         block = slice(2 * i, 2 * i + 4)
         information[block, block] += step.T @ np.linalg.inv(noise) @ step
     expected = np.linalg.solve(information, right)
-    found = smooth(sightings(xy_m, sd_m))
+    found = smooth(trajectory(xy_m, sd_m))
     assert found.xy_m[:, 0] == pytest.approx(expected[0::2], abs=1e-9)
     assert found.velocity_m_s[:, 0] == pytest.approx(expected[1::2], abs=1e-8)
     variances = np.diag(np.linalg.inv(information))
@@ -38,7 +38,7 @@ def test_equals_the_batch_least_squares_solution() -> None:
 
 def test_halves_the_error_of_a_standing_robot() -> None:
     noise_m = np.random.default_rng(5).normal(0.0, 0.03, (60, 2))
-    smoothed = smooth(sightings(noise_m, 0.03))
+    smoothed = smooth(trajectory(noise_m, 0.03))
     assert smoothed.xy_m.std() < noise_m.std() / 2
     assert np.median(smoothed.speed_m_s) < 0.03
 
@@ -47,10 +47,10 @@ def test_passes_over_what_is_outside_the_gate() -> None:
     xy_m = np.column_stack((0.02 * np.arange(20), np.zeros(20)))
     wrong = xy_m.copy()
     wrong[10] += (0.0, 0.8)
-    smoothed = smooth(sightings(wrong, 0.005))
+    smoothed = smooth(trajectory(wrong, 0.005))
     assert smoothed.xy_m[10] == pytest.approx(xy_m[10], abs=0.01)
 
 
 def test_one_position_is_its_own_estimate() -> None:
-    smoothed = smooth(sightings(np.array([[0.3, 0.4]]), 0.01))
+    smoothed = smooth(trajectory(np.array([[0.3, 0.4]]), 0.01))
     assert smoothed.xy_m.tolist() == [[0.3, 0.4]]

@@ -137,4 +137,4 @@ def test_speeds_and_accelerations_stay_within_the_settings() -> None:
 def _twist(speeds: WheelSpeeds) -> tuple[float, float]:
     left_m_per_s = speeds.left_steps_per_s * EpuckGeometry().step_m
     right_m_per_s = speeds.right_steps_per_s * EpuckGeometry().step_m
-    return 0.5 * (left_m_per_s + right_m_per_s), (right_m_per_s - left_m_per_s) / EpuckGeometry().track_m
+    return 0.5 * (left_m_per_s + right_m_per_s), (right_m_per_s - left_m_per_s) / EpuckGeometry().wheel_base_m

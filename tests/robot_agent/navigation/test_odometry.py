@@ -15,7 +15,7 @@ GEOMETRY = EpuckGeometry()
 
 def test_a_full_circle_ends_where_it_began() -> None:
     odometry = Odometry(GEOMETRY, memory_s=1.0)
-    turn_steps = math.tau * GEOMETRY.track_m / GEOMETRY.step_m
+    turn_steps = math.tau * GEOMETRY.wheel_base_m / GEOMETRY.step_m
     for part in range(101):
         left = round(part * 20)
         odometry.advance(WheelSteps(left, round(left + part / 100 * turn_steps)), part * TICK_NS)

@@ -10,7 +10,7 @@ import pytest
 from robot_agent.drivers.interfaces import Camera
 from robot_agent.drivers.sim.rendering.camera import SceneCamera, SimulatedCamera
 from robot_agent.drivers.sim.rendering.conditions import conditions
-from robot_agent.drivers.sim.rendering.scene import Body, Post, Scene
+from robot_agent.drivers.sim.rendering.scene import Post, Scene, SceneRobot
 from robot_agent.offline.demonstrations import Demonstration
 from robot_agent.vision.frames import Frame
 from swarm.geometry import Pose
@@ -56,7 +56,7 @@ def test_no_robot(shown: Demonstration) -> None:
 def test_two_robots_with_the_same_skirt(shown: Demonstration) -> None:
     visit = staged(shown)
     alone = visit.stage.shown
-    other = Body(Pose(0.55, 0.35, 0.0), "red")
+    other = SceneRobot(Pose(0.55, 0.35, 0.0), "red")
     visit.stage.shown = lambda tick: with_body(alone(tick), other)
     assert "two or more skirts could be the demonstrator's" in nothing_learnt(visit.run())
 
@@ -72,7 +72,7 @@ def test_the_view_is_blocked_half_way(shown: Demonstration) -> None:
 
 def test_the_lights_are_off(shown: Demonstration) -> None:
     visit = staged(shown)
-    camera = SimulatedCamera(visit.stage.seer.model, conditions("dark"), np.random.default_rng(1))
+    camera = SimulatedCamera(visit.stage.detector.model, conditions("dark"), np.random.default_rng(1))
     visit.camera = SceneCamera(camera, visit.stage.look)
     assert "the image is dark" in nothing_learnt(visit.run())
 
@@ -125,7 +125,7 @@ def test_the_observer_is_pushed(shown: Demonstration, pushed_m: float) -> None:
     assert nothing_learnt(visit.run()) == "the observer was pushed"
 
 
-def with_body(scene: Scene | None, body: Body) -> Scene:
+def with_body(scene: Scene | None, body: SceneRobot) -> Scene:
     assert scene
     return replace(scene, bodies=(*scene.bodies, body))
 

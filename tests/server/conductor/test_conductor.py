@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from google.protobuf.message import Message
 
-from server.conductor.carrier import SimulatedHand
+from server.conductor.carrier import SimulatedCarrier
 from server.conductor.conductor import Conductor
 from server.hubs.hub import Batch
 from swarm.clock import NS_PER_S
@@ -29,7 +29,7 @@ class Rig:
     def __init__(self, directory: Path) -> None:
         self.said: list[tuple[str, Any]] = []
         experiment = Experiment.load(write_experiment(directory, experiment_text(moves=10)))
-        self.conductor = Conductor(experiment, 3, self._publish, SimulatedHand(self._publish))
+        self.conductor = Conductor(experiment, 3, self._publish, SimulatedCarrier(self._publish))
         self.t_ns = 0
         self._sequence = 0
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from google.protobuf.message import Message
 
-from server.conductor.carrier import SimulatedHand
+from server.conductor.carrier import SimulatedCarrier
 from server.conductor.visits import REPEAT_NS, Visits
 from swarm.config.experiment import (
     Experiment,
@@ -40,7 +40,7 @@ class Conducted:
             visits=VisitSettings(every_tracks=every_tracks),
         )
         self.sent: list[tuple[Topic[Any], Message, str]] = []
-        self.visits = Visits(self.experiment, self._publish, SimulatedHand(self._publish))
+        self.visits = Visits(self.experiment, self._publish, SimulatedCarrier(self._publish))
 
     def _publish(self, topic: Topic[Any], message: Message, robot: str) -> None:
         self.sent.append((topic, message, robot))

@@ -13,7 +13,7 @@ from swarm.analysis.analyze import Analysis, Request, analyze
 from swarm.analysis.copying.drawing import LEAST_SIDE, moves_text, places, square_around
 from swarm.analysis.copying.errors import Differences, contains, differences, error_kind
 from swarm.analysis.copying.figures import colour_of, copying_figures, plot_copies, plot_paths
-from swarm.analysis.copying.paths import RememberedPath
+from swarm.analysis.copying.paths import LoggedPath
 from swarm.analysis.copying.ratios import apart, ratio_lines
 from swarm.analysis.copying.summary import Copying, chosen_copies, least_enacted, most_enacted, reason_kind
 from swarm.geometry import Move
@@ -77,11 +77,9 @@ def test_labels_keep_apart_in_order_and_stay_where_there_is_room() -> None:
     np.testing.assert_allclose(apart([1.0, 1.0], 0.1, 1.0), [0.9, 1.0])
 
 
-def path(
-    number: int, replays: int, copied: Sequence[int] | None = None, ratio: float = 0.5
-) -> RememberedPath:
+def path(number: int, replays: int, copied: Sequence[int] | None = None, ratio: float = 0.5) -> LoggedPath:
     """A path whose demonstrator made three moves SE; without `copied` one that was given."""
-    return RememberedPath(
+    return LoggedPath(
         log="a.mcap",
         condition="imitation",
         robot="imitator",
@@ -100,7 +98,7 @@ def path(
     )
 
 
-def copying(*paths: RememberedPath) -> Copying:
+def copying(*paths: LoggedPath) -> Copying:
     return Copying(paths, NO_REPLAYS, visits=0, failures={}, seen={})
 
 
@@ -117,7 +115,7 @@ NO_REPLAYS = pl.DataFrame(
 )
 
 
-def numbers(paths: Sequence[RememberedPath]) -> list[int]:
+def numbers(paths: Sequence[LoggedPath]) -> list[int]:
     return [found.path for found in paths]
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from swarm.geometry import Move
 from swarm.gridworld.arena import OPEN_10
-from swarm.gridworld.condition import Condition, EachOther, Expert, GivenPaths, NoTeacher
+from swarm.gridworld.condition import Condition, CopyEachOther, CopyExpert, GivenPaths, NoTeacher
 from swarm.learning.memory import ObservedPath
 
 
@@ -18,8 +18,8 @@ def test_points_follow_from_steps() -> None:
 
 
 def test_pair_has_two_learners() -> None:
-    assert Condition("c", OPEN_10, EachOther(moves=4), 0.3, steps=10).learners == 2
-    assert Condition("c", OPEN_10, Expert(moves=4), 0.3, steps=10).learners == 1
+    assert Condition("c", OPEN_10, CopyEachOther(moves=4), 0.3, steps=10).learners == 2
+    assert Condition("c", OPEN_10, CopyExpert(moves=4), 0.3, steps=10).learners == 1
 
 
 @pytest.mark.parametrize(
@@ -32,8 +32,8 @@ def test_pair_has_two_learners() -> None:
         ({"epsilon": 1.5}, "probabilities"),
         ({"beta": -0.1}, "probabilities"),
         ({"teacher": GivenPaths((ObservedPath((Move.E,)),) * 11)}, "do not fit"),
-        ({"teacher": Expert(moves=10)}, "expert's path has 9 moves"),
-        ({"teacher": EachOther(moves=4, every=0)}, "start at 1"),
+        ({"teacher": CopyExpert(moves=10)}, "expert's path has 9 moves"),
+        ({"teacher": CopyEachOther(moves=4, every=0)}, "start at 1"),
     ],
 )
 def test_impossible_conditions_are_refused(changes: dict[str, object], says: str) -> None:

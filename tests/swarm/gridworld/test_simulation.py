@@ -14,15 +14,15 @@ from swarm.gridworld.condition import (
     AccessEachOther,
     AccessExpert,
     Condition,
-    EachOther,
-    Experienced,
-    Expert,
+    CopyEachOther,
+    CopyExperienced,
+    CopyExpert,
     GivenPaths,
     NoTeacher,
     Teacher,
 )
 from swarm.gridworld.simulation import Simulation, simulate
-from swarm.gridworld.state import Agent
+from swarm.gridworld.state import AgentArrays
 from swarm.learning.memory import Approach, ObservedPath
 from tests.support.plain_gridworld import PlainAgent, PlainSimulation
 
@@ -36,10 +36,10 @@ TEACHERS: dict[str, Teacher] = {
     "away from it": ALONG,
     "eight paths": EIGHT,
     "a path of one move": MIXED,
-    "expert": Expert(moves=4, every=3),
-    "experienced": Experienced(moves=4, every=3, goal_reachings=20),
-    "each other": EachOther(moves=4, every=3),
-    "more moves than a run has": EachOther(moves=30, every=2),
+    "expert": CopyExpert(moves=4, every=3),
+    "experienced": CopyExperienced(moves=4, every=3, goal_reachings=20),
+    "each other": CopyEachOther(moves=4, every=3),
+    "more moves than a run has": CopyEachOther(moves=30, every=2),
     "access to the expert": AccessExpert(moves=6),
     "access to each other": AccessEachOther(moves=6),
 }
@@ -52,10 +52,10 @@ def condition(teacher: Teacher, approach: Approach = Approach.AVERAGE_Q, **chang
     return replace(base, **changes)  # type: ignore[arg-type]
 
 
-def assert_same(agent: Agent, plain: PlainAgent) -> None:
+def assert_same(agent: AgentArrays, plain: PlainAgent) -> None:
     """Place, table, memory, replay in progress and the next random number are all the same."""
     controller = plain.controller
-    assert agent.place[0] == plain.state
+    assert agent.state[0] == plain.state
     assert agent.arrivals[0] == plain.arrivals
     assert np.array_equal(agent.q.reshape(-1, 8), controller.q.values)
     assert agent.stream[0] == controller.rng.word  # type: ignore[attr-defined]
@@ -70,7 +70,7 @@ def assert_same(agent: Agent, plain: PlainAgent) -> None:
         assert agent.replayed[0] == -1
     else:
         assert agent.change[0] == controller.replay.q_change
-        assert agent.place_in_path[0] == controller.replay.index
+        assert agent.replay_index[0] == controller.replay.index
 
 
 @pytest.mark.parametrize("approach", Approach)
@@ -98,7 +98,7 @@ def test_every_decision_is_the_same(teacher: Teacher) -> None:
 
 
 def test_memory_forgets_as_the_plain_one_does() -> None:
-    case = condition(EachOther(moves=4, every=1), capacity=3)
+    case = condition(CopyEachOther(moves=4, every=1), capacity=3)
     plain, compiled = PlainSimulation(case, 5, 0), Simulation(case, 5, 0)
     for _ in range(4_000):
         plain.step()
@@ -137,7 +137,7 @@ def test_evaluation_does_not_disturb_learning() -> None:
 
 
 def test_same_seed_gives_the_same_trace_on_any_thread() -> None:
-    case = condition(EachOther(moves=4, every=3))
+    case = condition(CopyEachOther(moves=4, every=3))
     with ThreadPoolExecutor(2) as pool:
         traces = list(pool.map(lambda run: simulate(case, 9, run), [0, 1, 0]))
     assert np.array_equal(traces[0].best_path_length, traces[2].best_path_length)
@@ -147,7 +147,7 @@ def test_same_seed_gives_the_same_trace_on_any_thread() -> None:
 
 def test_conditions_of_a_run_are_a_pair_until_the_first_copy() -> None:
     alone = simulate(condition(NoTeacher(), evaluate_every=1, points=60), 4, 0)
-    pair = simulate(condition(EachOther(moves=4, every=1_000_000), evaluate_every=1, points=60), 4, 0)
+    pair = simulate(condition(CopyEachOther(moves=4, every=1_000_000), evaluate_every=1, points=60), 4, 0)
     assert np.array_equal(alone.best_path_length[0], pair.best_path_length[0])
 
 

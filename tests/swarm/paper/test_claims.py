@@ -103,7 +103,7 @@ def test_what_a_hundred_clear_runs_decide(many: Evidence, check: Check, verdict:
 
 def test_a_finding_shows_both_tests_and_the_effect(many: Evidence) -> None:
     finding = found(Better(QUICK, SLOW, 600, 1400), many)
-    for test in (finding.paper_test, finding.honest_test):
+    for test in (finding.paper_test, finding.family_wise_test):
         assert test is not None
         (window,) = test.windows
         assert 300 <= window.start <= 500

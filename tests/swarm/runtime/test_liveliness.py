@@ -8,18 +8,18 @@ import pytest
 
 from swarm.errors import UserError
 from swarm.runtime.liveliness import Presence, claim, present
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 
 
 @pytest.fixture
-def buses() -> Iterator[tuple[Bus, Bus]]:
+def buses() -> Iterator[tuple[Session, Session]]:
     """Two clients of one hub."""
     endpoint = free_endpoint()
     with (
-        Bus(BusSettings(endpoint, hub=True)),
-        Bus(BusSettings(endpoint)) as first,
-        Bus(BusSettings(endpoint)) as second,
+        Session(SessionSettings(endpoint, hub=True)),
+        Session(SessionSettings(endpoint)) as first,
+        Session(SessionSettings(endpoint)) as second,
     ):
         yield first, second
 
@@ -30,7 +30,9 @@ def test_a_presence_survives_its_key() -> None:
     assert Presence("robot", "r1", "odd/host name", 1).key == "alive/robot/r1/odd-host-name/1"
 
 
-def test_a_second_robot_of_one_name_is_refused_and_both_hosts_are_named(buses: tuple[Bus, Bus]) -> None:
+def test_a_second_robot_of_one_name_is_refused_and_both_hosts_are_named(
+    buses: tuple[Session, Session],
+) -> None:
     first, second = buses
     claim(first, Presence("robot", "r1", "board-a", 1))
     while not present(second, "robot"):
@@ -42,7 +44,7 @@ def test_a_second_robot_of_one_name_is_refused_and_both_hosts_are_named(buses: t
     )
 
 
-def test_other_names_and_kinds_do_not_conflict(buses: tuple[Bus, Bus]) -> None:
+def test_other_names_and_kinds_do_not_conflict(buses: tuple[Session, Session]) -> None:
     first, second = buses
     claim(first, Presence("robot", "r1", "board-a", 1))
     claim(second, Presence("robot", "r2", "board-b", 2))
@@ -52,7 +54,7 @@ def test_other_names_and_kinds_do_not_conflict(buses: tuple[Bus, Bus]) -> None:
     assert sorted(presence.name for presence in found) == ["r1", "r2"]
 
 
-def test_a_name_is_free_again_after_its_process_left(buses: tuple[Bus, Bus]) -> None:
+def test_a_name_is_free_again_after_its_process_left(buses: tuple[Session, Session]) -> None:
     first, second = buses
     claim(first, Presence("robot", "r1", "board-a", 1))
     first.close()

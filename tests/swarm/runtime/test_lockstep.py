@@ -21,7 +21,7 @@ from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery
 from swarm.runtime.liveliness import Presence, claim
-from swarm.runtime.lockstep import SENT_AT_ONCE_BYTES, LockstepLink, key_matches
+from swarm.runtime.lockstep import SENT_AT_ONCE_BYTES, LockstepNode, key_matches
 from swarm.runtime.lockstep_frames import (
     BAD_FRAME,
     TICK,
@@ -32,7 +32,7 @@ from swarm.runtime.lockstep_frames import (
     unpack_items,
 )
 from swarm.runtime.node import Step
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 
 TICK_S = 0.1
@@ -68,10 +68,10 @@ def test_no_cut_frame_is_read_as_another() -> None:
         unpack_items(b"\xff" * 100, TICK.size)
 
 
-def run(link: LockstepLink, step: Step, raised: list[Exception]) -> None:
+def run(node: LockstepNode, step: Step, raised: list[Exception]) -> None:
     """A process's main thread; what it raises is kept."""
     try:
-        link.run(step)
+        node.run(step)
     except Exception as error:
         raised.append(error)
 
@@ -82,35 +82,35 @@ class Swarm:
     def __init__(self, stack: ExitStack) -> None:
         self.endpoint = free_endpoint()
         self.stack = stack
-        self.bus = stack.enter_context(Bus(BusSettings(self.endpoint, hub=True)))
-        claim(self.bus, Presence("server", "server", "here", 1))
+        self.session = stack.enter_context(Session(SessionSettings(self.endpoint, hub=True)))
+        claim(self.session, Presence("server", "server", "here", 1))
         self.warnings: list[str] = []
         self.heard: dict[str, list[tuple[int, str, int]]] = {}
         self.raised: list[Exception] = []
 
     def hub(self, *processes: str) -> LockstepHub:
-        return LockstepHub(self.bus, list(processes), TICK_S, lambda: None, self.warnings.append)
+        return LockstepHub(self.session, list(processes), TICK_S, lambda: None, self.warnings.append)
 
-    def start(self, robot: str, step_of: Callable[[LockstepLink], Step] | None = None) -> None:
+    def start(self, robot: str, step_of: Callable[[LockstepNode], Step] | None = None) -> None:
         """A robot that reports every tick and writes down what it hears, or steps as told."""
         thread = threading.Thread(target=self._run, args=(robot, step_of or partial(self._reporter, robot)))
         thread.start()
         self.stack.callback(thread.join)
 
-    def _run(self, robot: str, step_of: Callable[[LockstepLink], Step]) -> None:
-        with Bus(BusSettings(self.endpoint)) as bus:
-            link = LockstepLink(bus, robot)
-            run(link, step_of(link), self.raised)
+    def _run(self, robot: str, step_of: Callable[[LockstepNode], Step]) -> None:
+        with Session(SessionSettings(self.endpoint)) as session:
+            node = LockstepNode(session, robot)
+            run(node, step_of(node), self.raised)
 
-    def _reporter(self, robot: str, link: LockstepLink) -> Step:
+    def _reporter(self, robot: str, node: LockstepNode) -> Step:
         heard = self.heard.setdefault(robot, [])
-        moves, orders = link.subscribe(topics.MOVE), link.subscribe(topics.ORDER, robot)
+        moves, orders = node.subscribe(topics.MOVE), node.subscribe(topics.ORDER, robot)
         numbers = count(1)
 
         def step(t_ns: int) -> None:
             heard.extend((t_ns, f"move of {move.robot}", move.message.number) for move in moves.take())
             heard.extend((t_ns, "order", order.message.kind) for order in orders.take())
-            link.publish(topics.MOVE, pb.Move(number=next(numbers)), robot)
+            node.publish(topics.MOVE, pb.Move(number=next(numbers)), robot)
 
         return step
 
@@ -154,8 +154,8 @@ def test_a_repeated_tick_gets_the_same_answer_and_is_not_stepped_again(swarm: Sw
     hub.advance()
     hub.gather()
     answers: SimpleQueue[bytes] = SimpleQueue()
-    swarm.bus.on_arrival(LOCKSTEP_DONE, answers.put)
-    again = swarm.bus.sender(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
+    swarm.session.on_arrival(LOCKSTEP_DONE, answers.put)
+    again = swarm.session.publisher(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
     again.put(TICK.pack(1, 100_000_000, 100_000_000, 1))
     answer = unpack_answer(answers.get())
     assert answer.number == 1
@@ -169,10 +169,10 @@ def test_an_answer_of_any_size_arrives(swarm: Swarm) -> None:
     """More than Zenoh's thread may send itself, and more than Zenoh's queue holds."""
     event = pb.Event(text="x" * 2 * SENT_AT_ONCE_BYTES)
 
-    def talker(link: LockstepLink) -> Step:
+    def talker(node: LockstepNode) -> Step:
         def step(t_ns: int) -> None:  # noqa: ARG001
             for _ in range(64):
-                link.publish(topics.EVENT, event, "a")
+                node.publish(topics.EVENT, event, "a")
 
         return step
 
@@ -189,16 +189,16 @@ def test_ticks_repeated_at_once_are_answered_once_more(swarm: Swarm) -> None:
     """Twenty answers, each near the most that Zenoh's thread sends itself, would fill its queue."""
     event = pb.Event(text="x" * (SENT_AT_ONCE_BYTES - 1000))
 
-    def talker(link: LockstepLink) -> Step:
-        return lambda t_ns: link.publish(topics.EVENT, event, f"a{t_ns}")
+    def talker(node: LockstepNode) -> Step:
+        return lambda t_ns: node.publish(topics.EVENT, event, f"a{t_ns}")
 
     swarm.start("a", talker)
     hub = swarm.hub("a")
     answers: SimpleQueue[bytes] = SimpleQueue()
-    swarm.bus.on_arrival(LOCKSTEP_DONE, answers.put)
+    swarm.session.on_arrival(LOCKSTEP_DONE, answers.put)
     hub.start()
     hub.advance()
-    again = swarm.bus.sender(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
+    again = swarm.session.publisher(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY)
     for _ in range(20):
         again.put(TICK.pack(1, 100_000_000, 100_000_000, 1))
     hub.gather()
@@ -227,16 +227,16 @@ class FailingStep:
 def test_what_a_step_raises_ends_the_process_and_no_other_step_is_made(swarm: Swarm) -> None:
     step = FailingStep()
     ticks: SimpleQueue[bytes] = SimpleQueue()
-    with Bus(BusSettings(swarm.endpoint)) as bus:
-        link = LockstepLink(bus, "a")
+    with Session(SessionSettings(swarm.endpoint)) as session:
+        node = LockstepNode(session, "a")
         raised: list[Exception] = []
-        process = threading.Thread(target=run, args=(link, step, raised))
+        process = threading.Thread(target=run, args=(node, step, raised))
         process.start()
         hub = swarm.hub("a")
         hub.start()
         hub.advance()
         process.join()
-        bus.on_arrival(LOCKSTEP_TICK.format(process="a"), ticks.put)
+        session.on_arrival(LOCKSTEP_TICK.format(process="a"), ticks.put)
         hub.advance()
         while TICK.unpack_from(ticks.get())[0] != hub.number:
             pass
@@ -246,8 +246,8 @@ def test_what_a_step_raises_ends_the_process_and_no_other_step_is_made(swarm: Sw
 
 LEAVER = """
 import os, signal, sys
-from swarm.runtime.zenoh_session import Bus, BusSettings
-from swarm.runtime.lockstep import LockstepLink
+from swarm.runtime.zenoh_session import Session, SessionSettings
+from swarm.runtime.lockstep import LockstepNode
 from swarm.runtime.process import leave_on_signals
 
 def step(t_ns):
@@ -257,9 +257,9 @@ def step(t_ns):
     print("stepped")
 
 leave_on_signals()
-with Bus(BusSettings(sys.argv[1])) as bus:
+with Session(SessionSettings(sys.argv[1])) as session:
     try:
-        LockstepLink(bus, "a").run(step)
+        LockstepNode(session, "a").run(step)
     finally:
         print("left")
 """
@@ -278,11 +278,11 @@ def test_a_process_that_is_told_to_leave_ends_its_step_first(swarm: Swarm) -> No
 
 SLOW = """
 import argparse, sys, time
-from swarm.runtime.zenoh_session import BusSettings
+from swarm.runtime.zenoh_session import SessionSettings
 from swarm.runtime.process import add_common_arguments, joined
 
 def step(t_ns):
-    end_s = time.monotonic() + 2 * BusSettings("").lease_s
+    end_s = time.monotonic() + 2 * SessionSettings("").lease_s
     while time.monotonic() < end_s:
         "Zenoh's thread gives no sign of life meanwhile."
 
@@ -297,12 +297,12 @@ with joined(parser.parse_args(words), "robot", ["a"], 0.1) as link:
 def test_a_process_stays_present_while_it_steps(swarm: Swarm) -> None:
     process = subprocess.Popen([sys.executable, "-c", SLOW, swarm.endpoint])
     answers: list[bytes] = []
-    swarm.bus.on_arrival(LOCKSTEP_DONE, answers.append)
+    swarm.session.on_arrival(LOCKSTEP_DONE, answers.append)
     hub = swarm.hub("a")
     hub.start()
     hub.advance()
     while not any(unpack_answer(answer).number == 1 for answer in answers):
-        assert swarm.bus.alive("alive/robot/**")
+        assert swarm.session.alive("alive/robot/**")
     hub.gather()
     hub.finish()
     assert process.wait() == 0
@@ -312,7 +312,7 @@ def test_bytes_that_are_no_tick_end_the_process_with_a_clear_line(swarm: Swarm) 
     swarm.start("a")
     hub = swarm.hub("a")
     hub.start()
-    swarm.bus.sender(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY).put(b"no tick")
+    swarm.session.publisher(LOCKSTEP_TICK.format(process="a"), Delivery.EVERY).put(b"no tick")
     swarm.stack.pop_all().close()
     assert [str(error)[:30] for error in swarm.raised] == ["a: the server sent no tick: un"]
 
@@ -320,7 +320,7 @@ def test_bytes_that_are_no_tick_end_the_process_with_a_clear_line(swarm: Swarm) 
 def test_a_process_that_never_comes_is_named(swarm: Swarm) -> None:
     swarm.start("a")
     times_s = iter(range(0, 100_000, 10))
-    hub = LockstepHub(swarm.bus, ["a", "b"], TICK_S, lambda: None, print, lambda: float(next(times_s)))
+    hub = LockstepHub(swarm.session, ["a", "b"], TICK_S, lambda: None, print, lambda: float(next(times_s)))
     with pytest.raises(RunFailedError, match="b did not start within 60 s"):
         hub.start()
     hub.finish()
@@ -331,9 +331,14 @@ def test_a_silent_process_is_warned_of_and_given_up(swarm: Swarm) -> None:
     swarm.start("a")
     times_s = iter(range(0, 100_000, 3))
     hub = LockstepHub(
-        swarm.bus, ["a", "silent"], TICK_S, lambda: None, swarm.warnings.append, lambda: float(next(times_s))
+        swarm.session,
+        ["a", "silent"],
+        TICK_S,
+        lambda: None,
+        swarm.warnings.append,
+        lambda: float(next(times_s)),
     )
-    swarm.bus.sender(LOCKSTEP_DONE, Delivery.EVERY).put(pack_answer(0, "silent"))
+    swarm.session.publisher(LOCKSTEP_DONE, Delivery.EVERY).put(pack_answer(0, "silent"))
     hub.start()
     hub.publish(topics.SERVER_EVENT, pb.Event(name="said before"))
     hub.advance()

@@ -7,8 +7,8 @@ from itertools import count
 from swarm.clock import unix_clock
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.runtime.node import LiveLink, Sequencer
-from swarm.runtime.zenoh_session import Bus, BusSettings
+from swarm.runtime.node import LiveNode, Sequencer
+from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 
 PERIOD_S = 0.01
@@ -22,11 +22,11 @@ def test_each_key_is_numbered_from_one() -> None:
 def test_a_robot_hears_its_own_messages_numbered_without_gaps() -> None:
     endpoint = free_endpoint()
     with (
-        Bus(BusSettings(endpoint, hub=True)) as here,
-        Bus(BusSettings(endpoint)) as there,
+        Session(SessionSettings(endpoint, hub=True)) as here,
+        Session(SessionSettings(endpoint)) as there,
     ):
-        sender = LiveLink(here, unix_clock(), PERIOD_S, epoch=77)
-        receiver = LiveLink(there, unix_clock(), PERIOD_S, epoch=78)
+        publisher = LiveNode(here, unix_clock(), PERIOD_S, epoch=77)
+        receiver = LiveNode(there, unix_clock(), PERIOD_S, epoch=78)
         own, everyone = receiver.subscribe(topics.ORDER, "a"), receiver.subscribe(topics.ORDER)
         orders, all_orders = [], []
         numbering = count()
@@ -34,11 +34,11 @@ def test_a_robot_hears_its_own_messages_numbered_without_gaps() -> None:
         def step(t_ns: int) -> None:  # noqa: ARG001
             number = next(numbering)
             for robot in ("a", "b"):
-                sender.publish(topics.ORDER, pb.Order(kind=pb.Order.RUN, reason=str(number)), robot)
+                publisher.publish(topics.ORDER, pb.Order(kind=pb.Order.RUN, reason=str(number)), robot)
             orders.extend(own.take())
             all_orders.extend(everyone.take())
             if len(orders) >= 20:
-                sender.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.ENDED))
+                publisher.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.ENDED))
 
         receiver.run(step)
     assert {order.robot for order in orders} == {"a"}
@@ -51,14 +51,14 @@ def test_a_robot_hears_its_own_messages_numbered_without_gaps() -> None:
 
 def test_ticks_are_multiples_of_the_period() -> None:
     ticks: list[int] = []
-    with Bus(BusSettings(free_endpoint(), hub=True)) as bus:
-        link = LiveLink(bus, unix_clock(), PERIOD_S, epoch=1)
+    with Session(SessionSettings(free_endpoint(), hub=True)) as session:
+        node = LiveNode(session, unix_clock(), PERIOD_S, epoch=1)
 
         def step(t_ns: int) -> None:
             ticks.append(t_ns)
             if len(ticks) >= 5:
-                link.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.ENDED))
+                node.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.ENDED))
 
-        link.run(step)
+        node.run(step)
     assert all(t_ns % 10_000_000 == 0 for t_ns in ticks)
     assert sorted(set(ticks)) == ticks

@@ -5,7 +5,7 @@ from __future__ import annotations
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header
-from swarm.runtime.subscription import Feed
+from swarm.runtime.subscription import Subscription
 
 POSE = pb.Pose(x_m=0.5, y_m=0.25, theta_rad=1.0).SerializeToString()
 
@@ -15,55 +15,59 @@ def header(sequence: int, epoch: int = 1) -> Header:
 
 
 def test_every_message_of_a_reliable_topic_is_kept_in_order() -> None:
-    feed = Feed(topics.MOVE)
+    subscription = Subscription(topics.MOVE)
     for number in (1, 2, 3):
-        feed.put("robot/a/move", header(number), pb.Move(number=number).SerializeToString())
-    received = feed.take()
+        subscription.put("robot/a/move", header(number), pb.Move(number=number).SerializeToString())
+    received = subscription.take()
     assert [(one.robot, one.header.sequence, one.message.number) for one in received] == [
         ("a", 1, 1),
         ("a", 2, 2),
         ("a", 3, 3),
     ]
-    assert feed.take() == []
+    assert subscription.take() == []
 
 
 def test_the_newest_state_of_each_key_wins() -> None:
-    feed = Feed(topics.POSE)
+    subscription = Subscription(topics.POSE)
     for robot, number, x_m in (("a", 1, 0.1), ("b", 1, 0.2), ("a", 2, 0.3)):
-        feed.put(f"robot/{robot}/pose", header(number), pb.Pose(x_m=x_m).SerializeToString())
-    assert sorted((one.robot, one.message.x_m) for one in feed.take()) == [("a", 0.3), ("b", 0.2)]
+        subscription.put(f"robot/{robot}/pose", header(number), pb.Pose(x_m=x_m).SerializeToString())
+    assert sorted((one.robot, one.message.x_m) for one in subscription.take()) == [("a", 0.3), ("b", 0.2)]
 
 
 def test_duplicates_and_messages_of_a_dead_process_are_left_out() -> None:
-    feed = Feed(topics.MOVE)
+    subscription = Subscription(topics.MOVE)
     for epoch, sequence in ((5, 1), (5, 1), (5, 3), (5, 2), (6, 1), (5, 4)):
-        feed.put("robot/a/move", header(sequence, epoch), b"")
-    assert [(one.header.epoch, one.header.sequence) for one in feed.take()] == [(5, 1), (5, 3), (6, 1)]
-    assert feed.duplicates == 3
+        subscription.put("robot/a/move", header(sequence, epoch), b"")
+    assert [(one.header.epoch, one.header.sequence) for one in subscription.take()] == [
+        (5, 1),
+        (5, 3),
+        (6, 1),
+    ]
+    assert subscription.duplicates == 3
 
 
 def test_bad_messages_are_counted_and_explained() -> None:
-    feed = Feed(topics.POSE)
-    feed.put("robot/a/pose", header(1), POSE)
-    feed.put("robot/b/pose", header(1), b"\xff\xff no protobuf")
-    assert [one.robot for one in feed.take()] == ["a"]
-    feed.put("robot/a/pose", None, POSE)
-    feed.put("robot/NOT AN ID/pose", header(1), POSE)
-    feed.put("robot/a/pose", header(2), pb.Pose(x_m=float("nan")).SerializeToString())
-    assert feed.take() == []
-    assert feed.bad == 4
-    assert "robot/a/pose" in feed.last_bad
-    assert "x_m is nan" in feed.last_bad
+    subscription = Subscription(topics.POSE)
+    subscription.put("robot/a/pose", header(1), POSE)
+    subscription.put("robot/b/pose", header(1), b"\xff\xff no protobuf")
+    assert [one.robot for one in subscription.take()] == ["a"]
+    subscription.put("robot/a/pose", None, POSE)
+    subscription.put("robot/NOT AN ID/pose", header(1), POSE)
+    subscription.put("robot/a/pose", header(2), pb.Pose(x_m=float("nan")).SerializeToString())
+    assert subscription.take() == []
+    assert subscription.bad == 4
+    assert "robot/a/pose" in subscription.last_bad
+    assert "x_m is nan" in subscription.last_bad
 
 
 def test_a_bad_message_of_a_later_epoch_does_not_silence_the_sender() -> None:
-    feed = Feed(topics.POSE)
-    feed.put("robot/a/pose", header(1, epoch=5), POSE)
-    assert len(feed.take()) == 1
-    feed.put("robot/a/pose", header(1, epoch=9), b"\xff\xffgarbage")
-    assert feed.take() == []
-    feed.put("robot/a/pose", header(2, epoch=5), POSE)
-    assert [one.header.sequence for one in feed.take()] == [2]
-    feed.put("robot/a/pose", header(2, epoch=5), POSE)
-    assert feed.take() == []
-    assert (feed.bad, feed.duplicates) == (1, 1)
+    subscription = Subscription(topics.POSE)
+    subscription.put("robot/a/pose", header(1, epoch=5), POSE)
+    assert len(subscription.take()) == 1
+    subscription.put("robot/a/pose", header(1, epoch=9), b"\xff\xffgarbage")
+    assert subscription.take() == []
+    subscription.put("robot/a/pose", header(2, epoch=5), POSE)
+    assert [one.header.sequence for one in subscription.take()] == [2]
+    subscription.put("robot/a/pose", header(2, epoch=5), POSE)
+    assert subscription.take() == []
+    assert (subscription.bad, subscription.duplicates) == (1, 1)

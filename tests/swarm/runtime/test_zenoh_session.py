@@ -11,7 +11,7 @@ import pytest
 
 from swarm.errors import UserError
 from swarm.messages.topics import Delivery
-from swarm.runtime.zenoh_session import Bus, BusSettings, Inbox, Sender
+from swarm.runtime.zenoh_session import Inbox, Publisher, Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 
 WAKE_S = 0.02
@@ -23,40 +23,40 @@ def endpoint() -> str:
 
 
 @pytest.fixture
-def hub(endpoint: str) -> Iterator[Bus]:
-    with Bus(BusSettings(endpoint, hub=True)) as bus:
-        yield bus
+def hub(endpoint: str) -> Iterator[Session]:
+    with Session(SessionSettings(endpoint, hub=True)) as session:
+        yield session
 
 
 @pytest.fixture
-def client(hub: Bus, endpoint: str) -> Iterator[Bus]:  # noqa: ARG001
-    with Bus(BusSettings(endpoint)) as bus:
-        yield bus
+def client(hub: Session, endpoint: str) -> Iterator[Session]:  # noqa: ARG001
+    with Session(SessionSettings(endpoint)) as session:
+        yield session
 
 
 class Arrivals:
     """Lets a test wait until something came under a key, or for a moment if nothing does."""
 
-    def __init__(self, bus: Bus, key: str) -> None:
+    def __init__(self, session: Session, key: str) -> None:
         self._payloads: SimpleQueue[bytes] = SimpleQueue()
-        bus.on_arrival(key, self._payloads.put)
+        session.on_arrival(key, self._payloads.put)
 
     def wait(self) -> None:
         with suppress(Empty):
             self._payloads.get(timeout=WAKE_S)
 
 
-def introduced(sender: Sender, inbox: Inbox, wake: Arrivals) -> None:
+def introduced(publisher: Publisher, inbox: Inbox, wake: Arrivals) -> None:
     """Put until the route stands: what is sent right after declaring may be lost."""
-    sender.put(b"hello")
+    publisher.put(b"hello")
     while not inbox.poll():
         wake.wait()
-        sender.put(b"hello")
+        publisher.put(b"hello")
 
 
-def drained(sender: Sender, inbox: Inbox, wake: Arrivals, last: bytes) -> list[bytes]:
+def drained(publisher: Publisher, inbox: Inbox, wake: Arrivals, last: bytes) -> list[bytes]:
     """Everything up to a last payload, which is put here."""
-    sender.put(last)
+    publisher.put(last)
     found: list[bytes] = []
     while last not in found:
         wake.wait()
@@ -64,15 +64,15 @@ def drained(sender: Sender, inbox: Inbox, wake: Arrivals, last: bytes) -> list[b
     return [payload for payload in found if payload != b"hello"]
 
 
-def test_every_payload_arrives_in_order_with_what_is_beside_it(hub: Bus, client: Bus) -> None:
+def test_every_payload_arrives_in_order_with_what_is_beside_it(hub: Session, client: Session) -> None:
     inbox = hub.inbox("robot/*/move", Delivery.EVERY)
     wake = Arrivals(hub, "robot/*/move")
-    sender = client.sender("robot/a/move", Delivery.EVERY)
-    introduced(sender, inbox, wake)
+    publisher = client.publisher("robot/a/move", Delivery.EVERY)
+    introduced(publisher, inbox, wake)
     for number in range(1000):
-        sender.put(str(number).encode())
-    assert drained(sender, inbox, wake, b"last")[:-1] == [str(number).encode() for number in range(1000)]
-    sender.put(b"payload", attachment=b"header")
+        publisher.put(str(number).encode())
+    assert drained(publisher, inbox, wake, b"last")[:-1] == [str(number).encode() for number in range(1000)]
+    publisher.put(b"payload", attachment=b"header")
     while not (samples := inbox.poll()):
         wake.wait()
     assert (samples[0].key, samples[0].payload, samples[0].attachment) == (
@@ -82,46 +82,46 @@ def test_every_payload_arrives_in_order_with_what_is_beside_it(hub: Bus, client:
     )
 
 
-def test_of_a_newest_delivery_one_is_kept(hub: Bus, client: Bus) -> None:
+def test_of_a_newest_delivery_one_is_kept(hub: Session, client: Session) -> None:
     newest = hub.inbox("robot/a/pose", Delivery.NEWEST)
     all_of_them = hub.inbox("robot/*/pose", Delivery.NEWEST, keep_all=True)
     wake = Arrivals(hub, "robot/*/pose")
-    sender = client.sender("robot/a/pose", Delivery.NEWEST)
-    introduced(sender, all_of_them, wake)
+    publisher = client.publisher("robot/a/pose", Delivery.NEWEST)
+    introduced(publisher, all_of_them, wake)
     for number in range(20):
-        sender.put(str(number).encode())
-    assert len(drained(sender, all_of_them, wake, b"last")) == 21
+        publisher.put(str(number).encode())
+    assert len(drained(publisher, all_of_them, wake, b"last")) == 21
     assert [sample.payload for sample in newest.poll()] == [b"last"]
 
 
-def test_clients_reach_each_other_through_the_hub(hub: Bus, client: Bus, endpoint: str) -> None:  # noqa: ARG001
-    with Bus(BusSettings(endpoint)) as other:
+def test_clients_reach_each_other_through_the_hub(hub: Session, client: Session, endpoint: str) -> None:  # noqa: ARG001
+    with Session(SessionSettings(endpoint)) as other:
         inbox = other.inbox("run/state", Delivery.EVERY)
         wake = Arrivals(other, "run/state")
-        sender = client.sender("run/state", Delivery.EVERY)
-        introduced(sender, inbox, wake)
-        assert drained(sender, inbox, wake, b"last") == [b"last"]
+        publisher = client.publisher("run/state", Delivery.EVERY)
+        introduced(publisher, inbox, wake)
+        assert drained(publisher, inbox, wake, b"last") == [b"last"]
 
 
-def test_arrivals_come_in_order_from_another_session_and_from_our_own(hub: Bus, client: Bus) -> None:
+def test_arrivals_come_in_order_from_another_session_and_from_our_own(hub: Session, client: Session) -> None:
     """Zenoh's thread calls for the client, the test's own thread for the hub's own sender."""
     arrived: SimpleQueue[bytes] = SimpleQueue()
     hub.on_arrival("robot/*/move", arrived.put)
-    hub.sender("robot/b/move", Delivery.EVERY).put(b"own")
+    hub.publisher("robot/b/move", Delivery.EVERY).put(b"own")
     assert arrived.get_nowait() == b"own"
-    sender = client.sender("robot/a/move", Delivery.EVERY)
+    publisher = client.publisher("robot/a/move", Delivery.EVERY)
     while arrived.empty():
-        sender.put(b"hello")
+        publisher.put(b"hello")
     payloads = [str(number).encode() for number in range(1000)]
     for payload in payloads:
-        sender.put(payload)
+        publisher.put(payload)
     received = iter(arrived.get, payloads[-1])
     assert [payload for payload in received if payload != b"hello"] == payloads[:-1]
 
 
-def test_presence_comes_and_goes_with_the_session(hub: Bus, endpoint: str) -> None:
-    with Bus(BusSettings(endpoint)) as bus:
-        bus.declare_alive("alive/robot/a/here/1")
+def test_presence_comes_and_goes_with_the_session(hub: Session, endpoint: str) -> None:
+    with Session(SessionSettings(endpoint)) as session:
+        session.declare_alive("alive/robot/a/here/1")
         while not hub.alive("alive/robot/**"):
             pass
         assert hub.alive("alive/robot/**") == ["alive/robot/a/here/1"]
@@ -129,15 +129,18 @@ def test_presence_comes_and_goes_with_the_session(hub: Bus, endpoint: str) -> No
         pass
 
 
-def test_a_busy_port_is_one_clear_line(hub: Bus, endpoint: str) -> None:  # noqa: ARG001
-    with pytest.raises(UserError) as error, Bus(BusSettings(endpoint, hub=True)):
+def test_a_busy_port_is_one_clear_line(hub: Session, endpoint: str) -> None:  # noqa: ARG001
+    with pytest.raises(UserError) as error, Session(SessionSettings(endpoint, hub=True)):
         pass
     assert str(error.value).startswith(f"cannot listen on {endpoint}: is another server running there")
     assert "\n" not in str(error.value)
 
 
 def test_no_server_is_one_clear_line(endpoint: str) -> None:
-    with pytest.raises(UserError, match=r"is it running\?"), Bus(BusSettings(endpoint, wait_for_hub=False)):
+    with (
+        pytest.raises(UserError, match=r"is it running\?"),
+        Session(SessionSettings(endpoint, wait_for_hub=False)),
+    ):
         pass
 
 
@@ -148,7 +151,7 @@ def test_a_bad_zenoh_file_is_named(tmp_path: Path, endpoint: str, content: str |
         file.write_text(content)
     with (
         pytest.raises(UserError, match=r"zenoh\.json5: no Zenoh configuration"),
-        Bus(BusSettings(endpoint, hub=True, config=file)),
+        Session(SessionSettings(endpoint, hub=True, config=file)),
     ):
         pass
 
@@ -162,10 +165,13 @@ def test_a_zenoh_file_may_limit_what_clients_do(tmp_path: Path, endpoint: str) -
                      key_exprs: ["robot/b/**"]}],
             subjects: [{id: "all"}], policies: [{rules: ["no"], subjects: ["all"]}]}}"""
     )
-    with Bus(BusSettings(endpoint, hub=True, config=file)) as hub, Bus(BusSettings(endpoint)) as client:
+    with (
+        Session(SessionSettings(endpoint, hub=True, config=file)) as hub,
+        Session(SessionSettings(endpoint)) as client,
+    ):
         inbox = hub.inbox("robot/**", Delivery.EVERY)
         wake = Arrivals(hub, "robot/**")
-        allowed = client.sender("robot/a/move", Delivery.EVERY)
+        allowed = client.publisher("robot/a/move", Delivery.EVERY)
         introduced(allowed, inbox, wake)
-        client.sender("robot/b/move", Delivery.EVERY).put(b"forged")
+        client.publisher("robot/b/move", Delivery.EVERY).put(b"forged")
         assert drained(allowed, inbox, wake, b"last") == [b"last"]

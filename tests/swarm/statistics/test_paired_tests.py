@@ -66,7 +66,10 @@ def test_points_without_variance_neither_stop_nor_fool_the_pointwise_test() -> N
 @pytest.mark.parametrize(
     ("second", "why"),
     [
-        (Sample("b", DRUG_2, tuple(range(1, 11))), "2 replicates .* are in only one of them; run both with"),
+        (
+            Sample("b", DRUG_2, tuple(range(1, 11))),
+            "2 replicates .* are in only one of them; run both with",
+        ),
         (Sample("b", DRUG_2[:9], PATIENTS[:9]), "1 replicates .* are in only one"),
         (Sample("b", DRUG_1, PATIENTS), r"every pair differs by 0 \(zero variance\)"),
     ],
@@ -132,12 +135,12 @@ def test_the_ratio_that_is_compared_stands_for_t() -> None:
 
 
 def test_the_honest_test_holds_its_level_over_the_whole_curve_and_the_papers_does_not() -> None:
-    trials, honest, paper = 300, 0, 0
+    trials, family_wise, paper = 300, 0, 0
     for trial in range(trials):
         first, second = curves("a", noise(1000 + trial)), curves("b", noise(9000 + trial))
-        honest += max_t_test(first, second, np.random.default_rng(trial), 1000).smallest_p <= 0.05
+        family_wise += max_t_test(first, second, np.random.default_rng(trial), 1000).smallest_p <= 0.05
         paper += bool(np.any(pointwise_t_test(first, second).p <= 0.05))
-    assert stats.binomtest(honest, trials, 0.05).pvalue > 0.01
+    assert stats.binomtest(family_wise, trials, 0.05).pvalue > 0.01
     assert paper / trials > 0.3
 
 

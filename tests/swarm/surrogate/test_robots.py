@@ -21,7 +21,7 @@ from swarm.messages import topics
 from swarm.messages.topics import Topic
 from swarm.surrogate.copies import CopyPair, CopyStore
 from swarm.surrogate.durations import KINDS, Durations
-from swarm.surrogate.robots import FastLearner, Shown
+from swarm.surrogate.robots import ShownMoves, SurrogateLearner
 from swarm.surrogate.trial import RobotTrial, longest_drive, window
 from tests.support.swarm_runs import ROOT
 
@@ -34,7 +34,7 @@ def deployed(name: str, moves: int) -> Experiment:
     return Experiment.load(ROOT / "deploy" / "sim" / f"{name}.toml").changed(moves=moves)
 
 
-class Recorded(FastLearner):
+class Recorded(SurrogateLearner):
     """Keeps what it went through, so that another learner can go through the same."""
 
     def __init__(self, *arguments: Any) -> None:
@@ -66,7 +66,7 @@ def test_it_decides_and_learns_as_a_robot_does() -> None:
     assert counts == [(each.n_replicated, each.n_q_plus) for each in fast.memory.remembered]
 
 
-def robot_learner(experiment: Experiment, fast: FastLearner) -> tuple[Learner, list[int], Controller]:
+def robot_learner(experiment: Experiment, fast: SurrogateLearner) -> tuple[Learner, list[int], Controller]:
     rules, best_paths = experiment.learning, list[int]()
 
     def publish(topic: Topic[Any], message: Message) -> None:
@@ -122,8 +122,8 @@ def test_refused_copies_are_not_remembered() -> None:
 
 
 def test_only_moves_wholly_in_view_are_seen_and_of_one_journey() -> None:
-    def shown(move: Move, began_s: float, track: int) -> Shown:
-        return Shown(move, began_s, began_s + 2.0, track)
+    def shown(move: Move, began_s: float, track: int) -> ShownMoves:
+        return ShownMoves(move, began_s, began_s + 2.0, track)
 
     seen = [shown(Move.N, 9.0, 0), shown(Move.E, 11.0, 0), shown(Move.S, 13.0, 0)]
     seen += [shown(Move.W, 36.0, 1), shown(Move.NW, 39.5, 1)]

@@ -20,10 +20,10 @@ from robot_agent.drivers.sim.rendering.scene import (
     WALL,
     WALL_HEIGHT_M,
     Band,
-    Body,
     Post,
     Rectangle,
     Scene,
+    SceneRobot,
     Surfaces,
     posts_along_walls,
     sorted_bands,
@@ -162,5 +162,5 @@ def calibration_frames(camera: SimulatedCamera, skirt: str, ranges_m: tuple[floa
     own = Pose(0.0, 0.0, 0.0)
     ahead_m = camera.model.forward_m
     room = (Rectangle(-0.3, -0.6, 0.9, 0.6),)
-    bodies = [Body(Pose(ahead_m + range_m, 0.0, 0.0), skirt) for range_m in ranges_m]
+    bodies = [SceneRobot(Pose(ahead_m + range_m, 0.0, 0.0), skirt) for range_m in ranges_m]
     return [camera.render(number, own, Scene(room, (body,))) for number, body in enumerate(bodies)]

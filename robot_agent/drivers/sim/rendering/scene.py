@@ -62,7 +62,7 @@ class Rectangle:
 
 
 @dataclass(frozen=True)
-class Body:
+class SceneRobot:
     """A robot: where it is, its skirt's colour and (for motion blur) its velocity, in the arena frame."""
 
     pose: Pose
@@ -90,7 +90,7 @@ class Scene:
     """
 
     walls: tuple[Walled, ...]
-    bodies: tuple[Body, ...] = ()
+    bodies: tuple[SceneRobot, ...] = ()
     posts: tuple[Post, ...] = ()
 
 
@@ -108,7 +108,7 @@ class Band:
     velocity_m_s: tuple[float, float] = (0.0, 0.0)
 
 
-def body_bands(body: Body) -> list[Band]:
+def body_bands(body: SceneRobot) -> list[Band]:
     """A robot in the order of painting: wheels in the shadow, board, the skirt around it, tracking hat."""
     parts = [
         (0.030, 0.0, SKIRT_BOTTOM_M, COLOURS["black"], 0.0),

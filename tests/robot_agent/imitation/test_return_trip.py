@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from robot_agent.imitation.demonstration import Place, demonstration_rests, find_rests
+from robot_agent.imitation.demonstration import Place, demonstration_stops, find_stops
 from robot_agent.imitation.smoothing import Smoothed
-from tests.robot_agent.imitation.test_rests import CELL_M, EAST, NORTH, REST, STOP, way
+from tests.robot_agent.imitation.test_stops import CELL_M, EAST, NORTH, REST, STOP, way
 
 BACK = (14.0, -0.08, 0.08)
 
 
 def shown(smoothed: Smoothed, start_m: Place | None = None) -> list[tuple[int, int]]:
-    rests = demonstration_rests(smoothed, find_rests(smoothed, CELL_M), CELL_M, start_m)
-    return [(rest.first, rest.last) for rest in rests]
+    stops = demonstration_stops(smoothed, find_stops(smoothed, CELL_M), CELL_M, start_m)
+    return [(stop.first, stop.last) for stop in stops]
 
 
 def test_the_drive_back_is_left_out() -> None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from robot_agent.imitation.positions import Covariance, ObservedPosition, plausible_sightings
+from robot_agent.imitation.positions import Covariance, ObservedPosition, plausible_trajectory
 
 ROUND: Covariance = ((1e-4, 0.0), (0.0, 1e-4))
 
@@ -15,7 +15,7 @@ ROUND: Covariance = ((1e-4, 0.0), (0.0, 1e-4))
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e300, -101.0])
 def test_impossible_places_are_dropped(bad: float) -> None:
     positions = [ObservedPosition(0, 0.5, 0.5, ROUND), ObservedPosition(1, bad, 0.5, ROUND)]
-    assert plausible_sightings(positions).t_ns.tolist() == [0]
+    assert plausible_trajectory(positions).t_ns.tolist() == [0]
 
 
 @pytest.mark.parametrize(
@@ -30,24 +30,24 @@ def test_impossible_places_are_dropped(bad: float) -> None:
 )
 def test_impossible_covariances_are_dropped(bad: Covariance) -> None:
     positions = [ObservedPosition(0, 0.5, 0.5, bad), ObservedPosition(1, 0.5, 0.5, ROUND)]
-    assert plausible_sightings(positions).t_ns.tolist() == [1]
+    assert plausible_trajectory(positions).t_ns.tolist() == [1]
 
 
 def test_sorted_by_time_and_one_at_a_time() -> None:
     positions = [ObservedPosition(t, float(t), 0.0, ROUND) for t in (3, 1, 2, 3)]
-    assert plausible_sightings(positions).t_ns.tolist() == [1, 2, 3]
+    assert plausible_trajectory(positions).t_ns.tolist() == [1, 2, 3]
 
 
 def test_a_zero_covariance_becomes_invertible() -> None:
-    kept = plausible_sightings([ObservedPosition(0, 0.0, 0.0, ((0.0, 0.0), (0.0, 0.0)))])
+    kept = plausible_trajectory([ObservedPosition(0, 0.0, 0.0, ((0.0, 0.0), (0.0, 0.0)))])
     assert np.linalg.det(kept.covariance_m2[0]) > 0
 
 
 def test_positions_come_back() -> None:
     positions = (ObservedPosition(5, 0.25, 0.5, ROUND),)
-    (back,) = plausible_sightings(positions).positions()
+    (back,) = plausible_trajectory(positions).positions()
     assert (back.t_ns, back.x_m, back.y_m) == (5, 0.25, 0.5)
 
 
 def test_nothing_gives_nothing() -> None:
-    assert len(plausible_sightings([])) == 0
+    assert len(plausible_trajectory([])) == 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from robot_agent.imitation.demonstration import find_rests
+from robot_agent.imitation.demonstration import find_stops
 from robot_agent.imitation.smoothing import Smoothed
 
 CELL_M = 0.12
@@ -25,19 +25,19 @@ EAST, NORTH, STOP, REST = (1.2, 0.1, 0.0), (1.2, 0.0, 0.1), (0.4, 0.0, 0.0), (1.
 
 def test_stops_between_drives() -> None:
     smoothed = way(REST, EAST, STOP, NORTH, REST)
-    rests = find_rests(smoothed, CELL_M)
-    assert [(rest.first, rest.last) for rest in rests] == [(0, 8), (15, 16), (23, 31)]
+    stops = find_stops(smoothed, CELL_M)
+    assert [(stop.first, stop.last) for stop in stops] == [(0, 8), (15, 16), (23, 31)]
 
 
 def test_a_blip_is_no_drive() -> None:
-    assert len(find_rests(way(REST, (0.4, 0.1, 0.0), REST), CELL_M)) == 1
+    assert len(find_stops(way(REST, (0.4, 0.1, 0.0), REST), CELL_M)) == 1
 
 
 def test_a_drive_with_a_slow_moment_is_no_pair_of_blips() -> None:
     smoothed = way(REST, (0.4, 0.1, 0.0), (0.2, 0.02, 0.0), (0.6, 0.1, 0.0), REST)
-    assert len(find_rests(smoothed, CELL_M)) == 2
+    assert len(find_stops(smoothed, CELL_M)) == 2
 
 
 def test_drives_cut_by_the_first_and_last_frame_have_one_end() -> None:
     smoothed = way(EAST, STOP, NORTH, STOP, EAST)
-    assert len(find_rests(smoothed, CELL_M)) == 2
+    assert len(find_stops(smoothed, CELL_M)) == 2

@@ -1,0 +1,137 @@
+"""Datagrams as they arrive: from whom, how long ago, and which were refused."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from struct import Struct
+from typing import NamedTuple, Protocol, runtime_checkable
+
+from swarm.clock import NS_PER_S
+from swarm.errors import UserError
+from tracker_bridge.protocols.cursor import DatagramError
+
+LARGEST_BYTES = 65_536
+"""More than UDP can carry."""
+RECEIVE_BUFFER_BYTES = 4 * 2**20
+"""Some 100 ms of the largest swarm, for a machine that was busy; the system may give less."""
+MOST_AT_ONCE = 2_000
+"""A flood may not keep the bridge from its robots: what is left waits for the next tick."""
+MOST_SENDERS = 100
+"""Whoever invents senders may not fill the memory."""
+
+_SO_TIMESTAMPNS = 35
+"""Linux: the kernel says when a datagram arrived. The number is that of <asm-generic/socket.h>."""
+_TIMESPEC = Struct("@qq")
+_ROOM_FOR_NOTES = socket.CMSG_SPACE(_TIMESPEC.size)
+
+
+class Datagram(NamedTuple):
+    """What arrived; `age_ns` is how long it has waited to be read."""
+
+    data: bytes
+    sender: str
+    age_ns: int
+
+
+@dataclass
+class Arrivals:
+    """What a receiver has counted since it began."""
+
+    senders: Counter[str] = field(default_factory=Counter)
+    refused: Counter[str] = field(default_factory=Counter)
+    """Datagrams by the reason for which they were refused."""
+
+    def count(self, sender: str) -> None:
+        known = sender in self.senders or len(self.senders) < MOST_SENDERS
+        self.senders[sender if known else "others"] += 1
+
+    def refuse(self, error: DatagramError) -> None:
+        self.refused[str(error)] += 1
+
+
+@runtime_checkable
+class Receiving(Protocol):
+    """A backend that can say what arrived."""
+
+    arrivals: Arrivals
+
+
+class DatagramSocket:
+    """A UDP socket that never waits. With a group it joins it on the interface of that address."""
+
+    def __init__(self, interface: str, port: int, group: str = "") -> None:
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._next: tuple[bytes, str, int] | None = None
+        try:
+            self._set_up(interface, port, group)
+        except OSError as error:
+            self._socket.close()
+            raise UserError(f"[tracker] cannot listen on {interface}:{port}: {error}") from error
+
+    def _set_up(self, interface: str, port: int, group: str) -> None:
+        self._socket.setblocking(False)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
+        self._socket.setsockopt(socket.SOL_SOCKET, _SO_TIMESTAMPNS, 1)
+        self._socket.bind((group or interface, port))
+        if group:
+            membership = socket.inet_aton(group) + socket.inet_aton(interface)
+            self._socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+
+    @property
+    def port(self) -> int:
+        port: int = self._socket.getsockname()[1]
+        return port
+
+    def fileno(self) -> int:
+        """For `select`, by which one can wait until something arrives."""
+        return self._socket.fileno()
+
+    def send(self, data: bytes, host: str, port: int) -> None:
+        """Best effort: a server that is not there yet is asked again later."""
+        try:
+            self._socket.sendto(data, (host, port))
+        except OSError:
+            return
+
+    def arrived(self) -> Iterator[Datagram]:
+        """Everything that has arrived before this call, oldest first.
+
+        What arrives meanwhile is left for the next call, unless its time says that the clock was set back.
+        """
+        now_ns = time.time_ns()
+        for _ in range(MOST_AT_ONCE):
+            if self._next is None:
+                self._next = self._received()
+            if self._next is None or now_ns < self._next[2] < now_ns + NS_PER_S:
+                return
+            (data, sender, received_ns), self._next = self._next, None
+            yield Datagram(data, sender, max(0, now_ns - received_ns) if received_ns else 0)
+
+    def _received(self) -> tuple[bytes, str, int] | None:
+        """A datagram, its sender, and the Unix time at which the kernel had it."""
+        while True:
+            try:
+                data, notes, _, (host, port) = self._socket.recvmsg(LARGEST_BYTES, _ROOM_FOR_NOTES)
+            except BlockingIOError:
+                return None
+            except OSError:
+                continue  # an answer "port unreachable" to something sent before
+            return data, f"{host}:{port}", _received_ns(notes)
+
+    def close(self) -> None:
+        self._socket.close()
+
+
+def _received_ns(notes: list[tuple[int, int, bytes]]) -> int:
+    """When the kernel received a datagram; 0 where it does not say."""
+    for _, kind, data in notes:
+        if kind == _SO_TIMESTAMPNS and len(data) == _TIMESPEC.size:
+            seconds, nanoseconds = _TIMESPEC.unpack(data)
+            received_ns: int = seconds * NS_PER_S + nanoseconds
+            return received_ns
+    return 0

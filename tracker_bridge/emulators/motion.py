@@ -1,0 +1,69 @@
+"""Where an emulator's robots are: a recording's, a run's, or circles that need neither."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from swarm.clock import NS_PER_S
+from swarm.config.experiment import Experiment, RobotSettings
+from swarm.geometry import Pose, wrap_angle_rad
+from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
+from swarm.messages.validation import decode
+from swarm.runtime.zenoh_session import Inbox, Session, SessionSettings, WireSample
+from tracker_bridge.backends.interface import TrackedPose
+
+SPEED_M_PER_S = 0.1
+"""An e-puck makes 0.13."""
+NOISE_M, NOISE_RAD = 0.0002, 0.002
+"""Of a good tracking system. Without any, poses would repeat and look frozen."""
+
+
+class Circles:
+    """Every robot drives round the middle of its compartment, a third of its side away."""
+
+    def __init__(self, experiment: Experiment, rng: np.random.Generator) -> None:
+        self._experiment = experiment
+        self._rng = rng
+
+    def poses(self, t_ns: int) -> list[TrackedPose]:
+        return [self._robot(robot, t_ns) for robot in self._experiment.robot]
+
+    def _robot(self, robot: RobotSettings, t_ns: int) -> TrackedPose:
+        place = self._experiment.compartment(robot)
+        radius_m = min(place.east_m - place.west_m, place.north_m - place.south_m) / 3
+        angle_rad = SPEED_M_PER_S / radius_m * t_ns / NS_PER_S
+        x_noise, y_noise, turn_noise = self._rng.standard_normal(3).tolist()
+        pose = Pose(
+            (place.west_m + place.east_m) / 2 + radius_m * math.cos(angle_rad) + NOISE_M * x_noise,
+            (place.south_m + place.north_m) / 2 + radius_m * math.sin(angle_rad) + NOISE_M * y_noise,
+            wrap_angle_rad(angle_rad + math.pi / 2 + NOISE_RAD * turn_noise),
+        )
+        return TrackedPose(robot.id, pose, t_ns)
+
+
+class TruthOfRun:
+    """The true places of a simulated run's robots, as the run publishes them."""
+
+    def __init__(self, inbox: Inbox) -> None:
+        self._inbox = inbox
+
+    @classmethod
+    @contextmanager
+    def of(cls, endpoint: str) -> Iterator[TruthOfRun]:
+        """Listens to the run's server for as long as the block lasts."""
+        with Session(SessionSettings(endpoint)) as session:
+            yield cls(session.inbox(topics.TRUTH.key(), topics.TRUTH.delivery, keep_all=True))
+
+    def poses(self, t_ns: int) -> list[TrackedPose]:
+        return [self._tracked(sample, t_ns) for sample in self._inbox.poll()]
+
+    @staticmethod
+    def _tracked(sample: WireSample, t_ns: int) -> TrackedPose:
+        found = topics.topic_of(sample.key)
+        truth = decode(pb.Truth, sample.payload)
+        return TrackedPose(found[1] if found else "", Pose(truth.x_m, truth.y_m, truth.theta_rad), t_ns)
