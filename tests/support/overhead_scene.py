@@ -19,9 +19,10 @@ from tracker_bridge.emulators.camera.floor import littered_floor, plain_floor
 from tracker_bridge.emulators.camera.optics import Optics, Station
 from tracker_bridge.emulators.camera.renderer import CameraRenderer
 from tracker_bridge.emulators.camera.scene import Faults, Swarm, TagPlate
+from tracker_bridge.emulators.camera.true_view import true_view
 from tracker_bridge.emulators.wandering import WanderingSwarm
 from tracker_bridge.overhead.arena_view import ArenaView, corners_of_known_tags, view_from_known_points
-from tracker_bridge.overhead.lens import Board, Lens, find_lens
+from tracker_bridge.overhead.lens import Board, find_lens
 from tracker_bridge.overhead.tags import TagDetector, TagFamily
 
 Grey = npt.NDArray[np.uint8]
@@ -86,17 +87,7 @@ class OverheadScene:
 
     def true_view(self) -> ArenaView:
         """The camera as it is."""
-        optics, station = self.optics, self.camera.station
-        coefficients = (optics.k1, optics.k2, optics.p1, optics.p2, 0.0)
-        size, focal, centre = (
-            (optics.width, optics.height),
-            optics.focal_px,
-            (optics.centre_u, optics.centre_v),
-        )
-        rotation = station.axes.T
-        return ArenaView(
-            Lens(*size, focal, focal, *centre, coefficients), rotation, -rotation @ station.place
-        )
+        return true_view(self.camera)
 
     def calibrated_view(self, boards: int) -> ArenaView:
         """The camera as calibration finds it: its lens from a board, its place from tags on the floor."""

@@ -22,9 +22,8 @@ from tracker_bridge.emulators.camera.floor import plain_floor
 from tracker_bridge.emulators.camera.optics import Optics, Station
 from tracker_bridge.emulators.camera.renderer import CameraRenderer
 from tracker_bridge.emulators.camera.scene import Faults, Swarm, TagPlate
-from tracker_bridge.overhead.arena_view import ArenaView
+from tracker_bridge.emulators.camera.true_view import true_view
 from tracker_bridge.overhead.frames import Frame
-from tracker_bridge.overhead.lens import Lens
 from tracker_bridge.overhead.settings import RobotTag
 from tracker_bridge.overhead.tag_tracking import TagTracker
 from tracker_bridge.overhead.tags import TagDetector, TagFamily
@@ -51,7 +50,7 @@ class RenderedTruth:
         self._due_ns = 0
         self._poses: dict[str, list[float]] = {}
 
-    def frames(self, t_ns: int) -> list[Frame]:
+    def frames(self, t_ns: int) -> list[Frame]:  # noqa: ARG002
         captured_t_ns = -1
         for received in self._truths():
             truth, captured_t_ns = received.message, received.header.t_ns
@@ -82,21 +81,13 @@ def camera_over(arena: ArenaSettings, robots: int, rng: np.random.Generator) -> 
     return CameraRenderer(optics, station, plate, Faults(), codes, plain_floor(optics, rng), rng)
 
 
-def true_view(camera: CameraRenderer) -> ArenaView:
-    """The emulated camera as calibration would find it at best."""
-    optics, rotation = camera.optics, camera.station.axes.T
-    size, focal, centre = (optics.width, optics.height), optics.focal_px, (optics.centre_u, optics.centre_v)
-    lens = Lens(*size, focal, focal, *centre, (optics.k1, optics.k2, optics.p1, optics.p2, 0.0))
-    return ArenaView(lens, rotation, -rotation @ camera.station.place)
-
-
 @contextmanager
 def _opened(setup: Setup) -> Iterator[Backend]:
     experiment = setup.experiment
     if setup.node is None:
         raise UserError('[tracker] backend is "overhead-sim", which sees robots only within a run')
     robots = [robot.id for robot in experiment.robot]
-    rng = spawned_generator(experiment.run.seed, "", setup.trial, component="overhead camera")
+    rng = spawned_generator(experiment.run.seed, "", setup.trial, robot="", component="overhead camera")
     camera = camera_over(experiment.arena, len(robots), rng)
     truths = setup.node.subscribe(topics.TRUTH)
     source = RenderedTruth(camera, robots, experiment.tracker.rate_hz, truths.take)

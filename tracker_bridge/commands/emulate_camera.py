@@ -19,9 +19,8 @@ from tracker_bridge.emulators.camera.optics import Optics, Station
 from tracker_bridge.emulators.camera.recording import PictureRecorder, RecordedSwarm
 from tracker_bridge.emulators.camera.renderer import CameraRenderer
 from tracker_bridge.emulators.camera.scene import Faults, Swarm, TagPlate
+from tracker_bridge.emulators.camera.true_view import true_view
 from tracker_bridge.emulators.wandering import WanderingSwarm
-from tracker_bridge.overhead.arena_view import ArenaView
-from tracker_bridge.overhead.lens import Lens
 from tracker_bridge.overhead.settings import Calibration
 from tracker_bridge.overhead.tags import TagFamily
 
@@ -125,21 +124,13 @@ def _write_calibration(
 ) -> None:
     """The camera as it is, and pictures to find that by."""
     folder = arguments.out
-    (folder / "camera.toml").write_text(Calibration.of_view(_true_view(camera)).as_toml())
+    (folder / "camera.toml").write_text(Calibration.of_view(true_view(camera)).as_toml())
     (folder / "boards").mkdir()
     for number, picture in enumerate(board_pictures(camera, BOARDS, np.random.default_rng(arguments.seed))):
         cv2.imwrite(str(folder / "boards" / f"{number:02}.png"), picture)
     codes = {tag: family.code(tag) for tag in _floor_ids(family, robots)}
     poses = np.array([(x_m, y_m, 0.0) for x_m, y_m in FLOOR_TAGS_M])
     cv2.imwrite(str(folder / "floor.png"), floor_picture(camera, codes, poses, FLOOR_SIDE_M))
-
-
-def _true_view(camera: CameraRenderer) -> ArenaView:
-    optics, station = camera.optics, camera.station
-    size, focal, centre = (optics.width, optics.height), optics.focal_px, (optics.centre_u, optics.centre_v)
-    lens = Lens(*size, focal, focal, *centre, (optics.k1, optics.k2, optics.p1, optics.p2, 0.0))
-    rotation = station.axes.T
-    return ArenaView(lens, rotation, -rotation @ station.place)
 
 
 def _floor_ids(family: TagFamily, robots: int) -> list[int]:

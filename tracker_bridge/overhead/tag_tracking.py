@@ -105,13 +105,12 @@ class TagTracker:
         return {tag.id: tag for tag in reversed(tags) if tag.id not in found}
 
     def _remember(self, found: dict[int, Tag]) -> None:
-        for tag, each in self._followed.items():
-            each.missed += tag not in found
-        for tag in found.values():
-            last = self._followed.get(tag.id)
-            self._followed[tag.id] = _Followed(
-                tag.corners, None if last is None or last.missed else last.quad
-            )
+        for number, each in self._followed.items():
+            each.missed += number not in found
+        for number, tag in found.items():
+            last = self._followed.get(number)
+            before = None if last is None or last.missed else last.quad
+            self._followed[number] = _Followed(tag.corners, before)
 
 
 def _size_px(quad: Floats) -> float:

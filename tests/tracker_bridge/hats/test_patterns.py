@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from swarm.errors import UserError
+from tracker_bridge.hats.alignment import Points
 from tracker_bridge.hats.design import design_hats
 from tracker_bridge.hats.examination import examine
 from tracker_bridge.hats.patterns import Hat, PinGrid, difference_m, every_pattern, self_difference_m
@@ -16,7 +17,7 @@ from tracker_bridge.hats.patterns import Hat, PinGrid, difference_m, every_patte
 KITE = np.array([[0.03, 0.01j, -0.01j, -0.02]])
 
 
-def moved(pins: np.ndarray, turn_rad: float = 1.0, shift: complex = 0.4 - 0.2j) -> np.ndarray:
+def moved(pins: Points, turn_rad: float = 1.0, shift: complex = 0.4 - 0.2j) -> Points:
     return np.asarray(pins * cmath.exp(1j * turn_rad) + shift)
 
 
@@ -31,11 +32,11 @@ def test_a_mirror_image_is_another_pattern() -> None:
 
 def test_the_difference_is_the_largest_miss_after_the_best_fit() -> None:
     """Two pins 40 mm and 46 mm apart fit with each pin 3 mm off."""
-    assert difference_m(np.array([[0.0, 0.040]]), np.array([[0.0, 0.046]])) == pytest.approx(0.003)
+    assert difference_m(np.array([[0j, 0.040]]), np.array([[0j, 0.046]])) == pytest.approx(0.003)
 
 
 def test_a_square_looks_the_same_turned_round() -> None:
-    square = np.array([[1, 1j, -1, -1j]]) * 0.02
+    square = np.array([[0.02, 0.02j, -0.02, -0.02j]])
     assert self_difference_m(square) == pytest.approx(0.0, abs=1e-12)
     assert self_difference_m(np.array([[0.03, 0.02j, -0.01j, -0.02 + 0.01j]])) > 0.002
 
