@@ -42,6 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, default=5.0, help="(%(default)s)")
     parser.add_argument("--frames-per-s", type=float, default=30.0, help="(%(default)s)")
     parser.add_argument("--video", action="store_true", help="one video in place of pictures")
+    parser.add_argument("--boards", type=int, default=BOARDS, help="pictures of a chessboard (%(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="(%(default)s)")
     parser.add_argument("--tags", default="36h11", metavar="FAMILY", help="(%(default)s)")
     parser.add_argument("--side-mm", type=float, default=1e3 * plate.side_m, help="of a tag (%(default)s)")
@@ -126,7 +127,9 @@ def _write_calibration(
     folder = arguments.out
     (folder / "camera.toml").write_text(Calibration.of_view(true_view(camera)).as_toml())
     (folder / "boards").mkdir()
-    for number, picture in enumerate(board_pictures(camera, BOARDS, np.random.default_rng(arguments.seed))):
+    for number, picture in enumerate(
+        board_pictures(camera, arguments.boards, np.random.default_rng(arguments.seed))
+    ):
         cv2.imwrite(str(folder / "boards" / f"{number:02}.png"), picture)
     codes = {tag: family.code(tag) for tag in _floor_ids(family, robots)}
     poses = np.array([(x_m, y_m, 0.0) for x_m, y_m in FLOOR_TAGS_M])

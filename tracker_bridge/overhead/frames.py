@@ -110,7 +110,7 @@ def open_frames(source: str, delay_s: float = 0.0) -> FrameSource:
             raise UserError(f"camera {source} cannot be opened: is it plugged in, and free?")
         return LiveFrames(capture, delay_s)
     path = Path(source)
-    return RecordedFrames(pictures_of(path), USUAL_RATE_HZ if path.is_dir() else _rate_hz(path))
+    return RecordedFrames(pictures_of(path), _rate_hz(path))
 
 
 def is_device(source: str) -> bool:
@@ -121,11 +121,11 @@ def is_device(source: str) -> bool:
 def pictures_of(path: Path) -> Iterator[Grey]:
     """The pictures of a folder, by name (of numbers by their size), or of a video."""
     if path.is_dir():
-        names = sorted((file for file in path.iterdir() if file.suffix.lower() in PICTURES), key=_by_number)
+        names = sorted((file for file in path.iterdir() if _is_picture(file)), key=_by_number)
         if not names:
             raise UserError(f"{path}: no pictures here ({', '.join(PICTURES)})")
         return (read_picture(name) for name in names)
-    return _video(path)
+    return iter([read_picture(path)]) if _is_picture(path) else _video(path)
 
 
 def read_picture(path: Path) -> Grey:
@@ -146,7 +146,13 @@ def _video(path: Path) -> Iterator[Grey]:
         yield _grey(np.asarray(picture, dtype=np.uint8))
 
 
+def _is_picture(path: Path) -> bool:
+    return path.suffix.lower() in PICTURES
+
+
 def _rate_hz(path: Path) -> float:
+    if path.is_dir() or _is_picture(path):
+        return USUAL_RATE_HZ
     capture = _opened(path)
     rate_hz = float(capture.get(cv2.CAP_PROP_FPS))
     capture.release()

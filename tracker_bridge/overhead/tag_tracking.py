@@ -59,7 +59,7 @@ class TagTracker:
 
     detector: TagDetector
     _followed: dict[int, _Followed] = field(default_factory=dict)
-    _strip: Iterator[int] = field(default_factory=lambda: cycle(range(STRIPS)))
+    _strip: Iterator[int] = field(default_factory=lambda: cycle(range(2 * STRIPS)))
 
     def track(self, picture: Grey) -> list[Tag]:
         """The tags of the next frame, by id."""
@@ -88,16 +88,19 @@ class TagTracker:
         return [Window.around(each.quad, NEAR_SIDES * _size_px(each.quad), picture) for each in lost]
 
     def _far(self, picture: Grey, found: dict[int, Tag]) -> list[Window]:
-        """The whole picture at first, then a strip at each frame in which a tag is long missing."""
+        """The whole picture at first, then a strip at each frame in which a tag is long missing; every second
+        time round, all of the strip, whatever its contrast."""
         if not self._followed:
-            return busy_windows(picture)
+            return [Window(0, 0, picture.shape[1], picture.shape[0])]
         near = {tag for tag, each in self._followed.items() if each.missed < NEAR_FRAMES}
         if found.keys() | near >= set(self.detector.family.ids):
             return []
         height = picture.shape[0] / STRIPS
-        number = next(self._strip)
+        is_thorough, number = divmod(next(self._strip), STRIPS)
         top = max(0, int(number * height - STRIP_OVERLAP_PX / 2))
         strip = picture[top : int((number + 1) * height + STRIP_OVERLAP_PX / 2)]
+        if is_thorough:
+            return [Window(0, top, strip.shape[1], top + strip.shape[0])]
         return [window.lowered(top) for window in busy_windows(strip)]
 
     def _search(self, picture: Grey, windows: list[Window], found: dict[int, Tag]) -> dict[int, Tag]:
