@@ -10,11 +10,15 @@ from statistics import median
 from swarm.clock import NS_PER_S, WallClock
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
+from swarm.geometry import Pose
 from tracker_bridge.backends.datagrams import Arrivals, Receiving
 from tracker_bridge.backends.interface import POLL_S, Backend, Setup, TrackedPose
 from tracker_bridge.backends.registry import system_named
 from tracker_bridge.protocols.cursor import Vector
 from tracker_bridge.survey import Report, Survey
+
+LONGEST_TRACK = 20 * 600
+"""Ten minutes at the 20 poses a second that a survey keeps."""
 
 
 class Listener:
@@ -34,13 +38,26 @@ class Listener:
             if t_ns >= end_ns:
                 return
 
-    def survey(self, seconds: float) -> Report:
-        """Listen for so long and say what came; datagrams are counted from the beginning."""
+    def survey(self, seconds: float) -> Survey:
+        """What came while listening for so long."""
         survey = Survey(self._experiment)
         for poses in self.poses(seconds):
             survey.take(poses, self._clock.now_ns())
-        arrivals = self._backend.arrivals if isinstance(self._backend, Receiving) else Arrivals()
-        return survey.report(seconds, arrivals)
+        return survey
+
+    def watched(self, every_s: float) -> Iterator[tuple[Report, dict[str, list[Pose]]]]:
+        """A report each time, and each robot's track of the last minutes."""
+        tracks: dict[str, list[Pose]] = {}
+        while True:
+            survey = self.survey(every_s)
+            for robot, track in survey.tracks.items():
+                tracks[robot] = (tracks.get(robot, []) + track)[-LONGEST_TRACK:]
+            yield survey.report(every_s, self.arrivals), tracks
+
+    @property
+    def arrivals(self) -> Arrivals:
+        """The datagrams since the beginning; none of a backend that receives no datagrams."""
+        return self._backend.arrivals if isinstance(self._backend, Receiving) else Arrivals()
 
 
 @contextmanager

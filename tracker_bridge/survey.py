@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
+from swarm.geometry import Pose
 from tracker_bridge.backends.datagrams import Arrivals
 from tracker_bridge.backends.interface import TrackedPose
 from tracker_bridge.mistakes import likely_mistakes
@@ -101,6 +102,14 @@ class Survey:
             dict(self._strangers),
             likely_mistakes(self._kept, arena.width_m, arena.height_m),
         )
+
+    @property
+    def tracks(self) -> dict[str, list[Pose]]:
+        """Some of each robot's poses, in order."""
+        tracks: dict[str, list[Pose]] = {}
+        for tracked in self._kept:
+            tracks.setdefault(tracked.robot, []).append(tracked.pose)
+        return tracks
 
     def _count_stranger(self, name: str) -> None:
         known = name in self._strangers or len(self._strangers) < MOST_STRANGERS

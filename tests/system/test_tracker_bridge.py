@@ -62,6 +62,18 @@ def test_check_fails_in_one_line_if_nobody_is_seen(experiment: Path) -> None:
     assert result.stderr == "failed: not seen: expert, imitator, loner\n"
 
 
+def test_watch_shows_a_table_the_arena_and_the_tracks(experiment: Path, tmp_path: Path) -> None:
+    picture = tmp_path / "tracks.png"
+    with started("emulate", system_of(experiment), experiment) as emulator:
+        result = called("watch", experiment, "--times", 3, "--every", 1, "--picture", picture)
+        emulator.terminate()
+    assert result.returncode == 0
+    assert result.stdout.count("latency ms p50") == 3
+    last = result.stdout.split("latency ms p50")[-1]
+    assert all(robot in last for robot in ("expert", "imitator", "loner", "+----"))
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
 def test_poses_of_an_emulated_swarm_reach_the_swarm(experiment: Path) -> None:
     endpoint = free_endpoint()
     seen: dict[str, pb.Pose] = {}

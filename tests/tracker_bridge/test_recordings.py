@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import math
+import random
 from pathlib import Path
 
 import pytest
@@ -162,6 +163,21 @@ def test_a_recording_may_be_packed(tmp_path: Path) -> None:
 def test_a_file_that_is_damaged_is_named(tmp_path: Path, text: str, said: str) -> None:
     with pytest.raises(UserError, match=said):
         played(tmp_path, text)
+
+
+@pytest.mark.parametrize(
+    "text", [VICON, MOTIVE, QUALISYS, ARTCULT], ids=["vicon", "motive", "qualisys", "artcult"]
+)
+def test_damage_anywhere_is_an_error_of_one_line_or_costs_only_its_place(tmp_path: Path, text: str) -> None:
+    rng = random.Random(5)
+    for _ in range(300):
+        at = rng.randrange(len(text))
+        noise = "".join(rng.choices('0.,-e"\t\n\x00\x7f9infa', k=rng.randrange(4)))
+        damaged = text[:at] + noise + text[at + rng.randrange(9) :]
+        try:
+            played(tmp_path, damaged)
+        except UserError as error:
+            assert "\n" not in str(error)
 
 
 def test_a_log_of_ours_plays_the_poses_it_holds(small_run: SmallRun) -> None:

@@ -123,6 +123,11 @@ def test_a_frame_that_comes_again_or_too_late_is_refused(stream: Stream) -> None
     assert stream.tracker.arrivals.refused == {"sent twice": 1, "of an older frame": 1}
 
 
+def test_an_object_that_is_in_a_datagram_twice_is_seen_once(stream: Stream) -> None:
+    stream.send(pack(5, [seen("a", 100.0), seen("b", 200.0), seen("a", 101.0)]))
+    assert found(stream.tracker) == [("a", 0.101), ("b", 0.2)]
+
+
 def test_a_tracker_that_was_started_again_is_followed(stream: Stream) -> None:
     stream.send(pack(500_000, [seen("a", 100.0)]), pack(1, [seen("a", 101.0)]))
     assert found(stream.tracker) == [("a", 0.1), ("a", 0.101)]

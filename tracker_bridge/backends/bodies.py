@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.geometry import Pose
@@ -14,10 +13,6 @@ from tracker_bridge.arena_frame import ArenaFrame, Placement
 from tracker_bridge.backends.interface import TrackedPose
 from tracker_bridge.protocols.cursor import Quaternion, Vector
 
-CLOCK_WINDOW_NS = 10 * NS_PER_S
-"""Two clocks of 100 ppm drift apart by 1 ms in this time."""
-CLOCK_RESET_NS = NS_PER_S // 5
-"""A clock that is off by so much was set, or its server was started again; no network is so late."""
 DRIVEN_M = 0.02
 """A direction over 2 cm is right within 0.1 rad if positions are right within 1 mm."""
 
@@ -32,33 +27,6 @@ class Body:
     """None if the system sees a point: then the robot faces where it drives."""
     residual_m: float = 0.0
     quality: float = 0.0
-
-
-class SourceClock:
-    """From the tracking system's clock to the run's.
-
-    Packets are late by different amounts but never early, so the least difference between receipt and sending
-    over the last seconds is that of the two clocks. Times of capture then have the source's even pace.
-    """
-
-    def __init__(self) -> None:
-        self._least: list[int] = []
-        self._window_began_ns = 0
-        self._last_ns = -1
-
-    def captured_ns(self, source_ns: int, sent_ns: int, received_ns: int) -> int:
-        """The run's time of a source time; later than the last one, never later than its receipt."""
-        offset_ns = received_ns - sent_ns
-        if not self._least or abs(offset_ns - min(self._least)) > CLOCK_RESET_NS:
-            self._least, self._window_began_ns = [offset_ns, offset_ns], received_ns
-        elif received_ns - self._window_began_ns > CLOCK_WINDOW_NS:
-            self._least, self._window_began_ns = [self._least[1], offset_ns], received_ns
-        self._least[1] = min(self._least[1], offset_ns)
-        captured_ns = min(received_ns, source_ns + min(self._least))
-        if captured_ns <= self._last_ns <= received_ns:
-            captured_ns = self._last_ns + 1
-        self._last_ns = captured_ns
-        return captured_ns
 
 
 class Roster:

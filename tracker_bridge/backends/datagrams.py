@@ -20,6 +20,8 @@ RECEIVE_BUFFER_BYTES = 4 * 2**20
 """Some 100 ms of the largest swarm, for a machine that was busy; the system may give less."""
 MOST_AT_ONCE = 2_000
 """A flood may not keep the bridge from its robots: what is left waits for the next tick."""
+OLDEST_NS = 10 * NS_PER_S
+"""A receive buffer of 4 MB does not hold more of any stream."""
 MOST_SENDERS = 100
 """Whoever invents senders may not fill the memory."""
 
@@ -30,11 +32,11 @@ _ROOM_FOR_NOTES = socket.CMSG_SPACE(_TIMESPEC.size)
 
 
 class Datagram(NamedTuple):
-    """What arrived; `age_ns` is how long it has waited to be read."""
+    """What arrived, from whom, and the machine's monotonic time at which the kernel had it."""
 
     data: bytes
     sender: str
-    age_ns: int
+    received_ns: int
 
 
 @dataclass
@@ -65,7 +67,6 @@ class DatagramSocket:
 
     def __init__(self, interface: str, port: int, group: str = "") -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._next: tuple[bytes, str, int] | None = None
         try:
             self._set_up(interface, port, group)
         except OSError as error:
@@ -99,39 +100,25 @@ class DatagramSocket:
             return
 
     def arrived(self) -> Iterator[Datagram]:
-        """Everything that has arrived before this call, oldest first.
-
-        What arrives meanwhile is left for the next call, unless its time says that the clock was set back.
-        """
-        now_ns = time.time_ns()
+        """Everything that waits, oldest first."""
         for _ in range(MOST_AT_ONCE):
-            if self._next is None:
-                self._next = self._received()
-            if self._next is None or now_ns < self._next[2] < now_ns + NS_PER_S:
-                return
-            (data, sender, received_ns), self._next = self._next, None
-            yield Datagram(data, sender, max(0, now_ns - received_ns) if received_ns else 0)
-
-    def _received(self) -> tuple[bytes, str, int] | None:
-        """A datagram, its sender, and the Unix time at which the kernel had it."""
-        while True:
             try:
                 data, notes, _, (host, port) = self._socket.recvmsg(LARGEST_BYTES, _ROOM_FOR_NOTES)
             except BlockingIOError:
-                return None
+                return
             except OSError:
                 continue  # an answer "port unreachable" to something sent before
-            return data, f"{host}:{port}", _received_ns(notes)
+            yield Datagram(data, f"{host}:{port}", time.monotonic_ns() - _age_ns(notes))
 
     def close(self) -> None:
         self._socket.close()
 
 
-def _received_ns(notes: list[tuple[int, int, bytes]]) -> int:
-    """When the kernel received a datagram; 0 where it does not say."""
+def _age_ns(notes: list[tuple[int, int, bytes]]) -> int:
+    """How long ago the kernel received a datagram; 0 where it does not say, or the clock was set."""
     for _, kind, data in notes:
         if kind == _SO_TIMESTAMPNS and len(data) == _TIMESPEC.size:
             seconds, nanoseconds = _TIMESPEC.unpack(data)
-            received_ns: int = seconds * NS_PER_S + nanoseconds
-            return received_ns
+            age_ns: int = time.time_ns() - seconds * NS_PER_S - nanoseconds
+            return age_ns if 0 <= age_ns < OLDEST_NS else 0
     return 0

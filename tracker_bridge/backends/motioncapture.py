@@ -22,6 +22,7 @@ from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment, TrackerSettings
 from swarm.errors import UserError
 from tracker_bridge.backends.bodies import Body, Roster
+from tracker_bridge.backends.clocks import ReceiptClock
 from tracker_bridge.backends.datagrams import Arrivals
 from tracker_bridge.backends.interface import TrackedPose, TrackingSystem
 from tracker_bridge.protocols.cursor import DatagramError, finite
@@ -47,6 +48,7 @@ class MotionCaptureTracker:
         self._roster = Roster(experiment, UNIT_M)
         self._sender = f"{settings.system} {settings.server}".strip()
         self._command = [sys.executable, "-m", __name__, settings.system, json.dumps(_options(settings))]
+        self._receipts = ReceiptClock()
         self._heard_ns: int | None = None
         self._start()
 
@@ -58,9 +60,11 @@ class MotionCaptureTracker:
     def poses(self, t_ns: int) -> list[TrackedPose]:
         self._heard_ns = t_ns if self._heard_ns is None else self._heard_ns
         tracked: list[TrackedPose] = []
-        for line in self._lines():
+        lines = self._lines()
+        shift_ns = self._receipts.shift_ns(t_ns)
+        for line in lines:
             self._heard_ns = t_ns
-            tracked += self._tracked(line, t_ns)
+            tracked += self._tracked(line, shift_ns)
         if t_ns - self._heard_ns > SILENT_NS:
             self.arrivals.refuse(DatagramError(f"no frame for {SILENT_NS // NS_PER_S} s: connecting again"))
             self._stop()
@@ -94,10 +98,10 @@ class MotionCaptureTracker:
         *lines, self._unfinished = self._unfinished.split(b"\n")
         return lines
 
-    def _tracked(self, line: bytes, t_ns: int) -> Iterator[TrackedPose]:
+    def _tracked(self, line: bytes, shift_ns: int) -> Iterator[TrackedPose]:
         self.arrivals.count(self._sender)
         seen_ns, bodies = json.loads(line)
-        received_ns = t_ns - max(0, time.time_ns() - seen_ns)
+        received_ns = seen_ns + shift_ns
         return self._roster.tracked([_body(*each) for each in bodies], received_ns, received_ns)
 
 
@@ -120,7 +124,7 @@ SYSTEM = TrackingSystem(lambda setup: closing(MotionCaptureTracker(setup.experim
 
 
 def tell(system: str, options: dict[str, str], telling: int) -> None:
-    """The child: a line for every frame, with the Unix time at which it came, until nobody reads it."""
+    """The child: a line for every frame, with the monotonic time at which it came, until nobody reads it."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     import motioncapture
 
@@ -129,7 +133,7 @@ def tell(system: str, options: dict[str, str], telling: int) -> None:
         while True:
             client.waitForNextFrame()
             bodies = [_told(name, body) for name, body in client.rigidBodies.items()]
-            lines.write(json.dumps([time.time_ns(), [body for body in bodies if body]]) + "\n")
+            lines.write(json.dumps([time.monotonic_ns(), [body for body in bodies if body]]) + "\n")
             lines.flush()
 
 

@@ -12,7 +12,8 @@ from contextlib import closing
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment, TrackerSettings
 from swarm.errors import UserError
-from tracker_bridge.backends.bodies import Body, Roster, SourceClock
+from tracker_bridge.backends.bodies import Body, Roster
+from tracker_bridge.backends.clocks import ReceiptClock, SourceClock
 from tracker_bridge.backends.datagrams import Arrivals, Datagram, DatagramSocket
 from tracker_bridge.backends.interface import TrackedPose, TrackingSystem
 from tracker_bridge.protocols import natnet
@@ -42,6 +43,7 @@ class NatNetTracker:
         self._roster = Roster(experiment, UNIT_M)
         self._knows_models = False
         self._doubts_version = False
+        self._receipts = ReceiptClock()
         self._clock = SourceClock()
         self._asked_ns: int | None = None
         self._commands = DatagramSocket(settings.interface, 0)
@@ -56,13 +58,14 @@ class NatNetTracker:
     def poses(self, t_ns: int) -> list[TrackedPose]:
         self._ask(t_ns)
         self.frames = []
+        arrived = [(each, datagram) for each in self.receivers for datagram in each.arrived()]
+        shift_ns = self._receipts.shift_ns(t_ns)
         tracked: list[TrackedPose] = []
-        for receiver in self.receivers:
-            for datagram in receiver.arrived():
-                frame = self._frame(datagram, receiver is self._commands)
-                if frame:
-                    self.frames.append(frame)
-                    tracked += self._tracked(frame, t_ns - datagram.age_ns)
+        for receiver, datagram in arrived:
+            frame = self._frame(datagram, receiver is self._commands)
+            if frame:
+                self.frames.append(frame)
+                tracked += self._tracked(frame, datagram.received_ns + shift_ns)
         return tracked
 
     def close(self) -> None:
@@ -115,7 +118,7 @@ class NatNetTracker:
 
     def _meet(self, info: ServerInfo) -> None:
         if not natnet.is_known(info.version):
-            raise DatagramError(f"of NatNet {info.version[0]}.{info.version[1]}; 2.5 to 4.1 are known")
+            raise DatagramError("of a NatNet version that is not known; 2.5 to 4.1 are")
         self.info = info
         self._asked_ns = None
 

@@ -7,6 +7,7 @@ from contextlib import closing
 from swarm.config.experiment import Experiment
 from tracker_bridge.arena_frame import from_xyz_angles
 from tracker_bridge.backends.bodies import Body, Roster
+from tracker_bridge.backends.clocks import ReceiptClock
 from tracker_bridge.backends.datagrams import Arrivals, Datagram, DatagramSocket
 from tracker_bridge.backends.interface import TrackedPose, TrackingSystem
 from tracker_bridge.protocols.cursor import DatagramError
@@ -23,6 +24,7 @@ class ViconTracker:
         settings = experiment.tracker
         self.arrivals = Arrivals()
         self._roster = Roster(experiment, UNIT_M)
+        self._clock = ReceiptClock()
         self._server = settings.server
         self._socket = DatagramSocket(settings.interface, settings.port or DEFAULT_PORT)
         self.receivers = (self._socket,)
@@ -34,9 +36,11 @@ class ViconTracker:
         return self._socket.port
 
     def poses(self, t_ns: int) -> list[TrackedPose]:
+        datagrams = list(self._socket.arrived())
+        shift_ns = self._clock.shift_ns(t_ns)
         tracked: list[TrackedPose] = []
-        for datagram in self._socket.arrived():
-            received_ns = t_ns - datagram.age_ns
+        for datagram in datagrams:
+            received_ns = datagram.received_ns + shift_ns
             bodies = [_body(seen) for seen in self._objects(datagram)]
             tracked += self._roster.tracked(bodies, received_ns, received_ns)
         return tracked
@@ -61,7 +65,8 @@ class ViconTracker:
         if part.frame != self._frame:
             self._frame = part.frame
             self._seen.clear()
-        new = [seen for seen in part.objects if seen.name not in self._seen]
+        named = {seen.name: seen for seen in part.objects}
+        new = [seen for name, seen in named.items() if name not in self._seen]
         if part.objects and not new:
             raise DatagramError("sent twice")
         self._seen.update(seen.name for seen in new)

@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Print what arrived; exit code 1 if a robot is missing or a setting looks wrong."""
     with listening(Experiment.load(arguments.experiment), unix_clock()) as listener:
-        report = listener.survey(arguments.seconds)
+        report = listener.survey(arguments.seconds).report(arguments.seconds, listener.arrivals)
     print(json.dumps(asdict(report)) if arguments.json else table(report))
     if report.missing or report.mistakes:
         missing = f"not seen: {', '.join(report.missing)}" if report.missing else ""

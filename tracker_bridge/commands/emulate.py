@@ -62,6 +62,7 @@ def _motion(arguments: argparse.Namespace, experiment: Experiment, stack: ExitSt
     if arguments.file:
         plain = replace(experiment.tracker, axes="x y z", unit_m=0.0, origin_m=(0.0, 0.0), turn_rad=0.0)
         return replay(replace(experiment, tracker=plain), arguments.file)
+    rng = np.random.default_rng(experiment.run.seed)
     if arguments.connect:
-        return stack.enter_context(TruthOfRun.of(arguments.connect))
-    return Circles(experiment, np.random.default_rng(experiment.run.seed))
+        return stack.enter_context(TruthOfRun.of(arguments.connect, rng))
+    return Circles(experiment, rng)

@@ -37,33 +37,43 @@ class Circles:
         place = self._experiment.compartment(robot)
         radius_m = min(place.east_m - place.west_m, place.north_m - place.south_m) / 3
         angle_rad = SPEED_M_PER_S / radius_m * t_ns / NS_PER_S
-        x_noise, y_noise, turn_noise = self._rng.standard_normal(3).tolist()
         pose = Pose(
-            (place.west_m + place.east_m) / 2 + radius_m * math.cos(angle_rad) + NOISE_M * x_noise,
-            (place.south_m + place.north_m) / 2 + radius_m * math.sin(angle_rad) + NOISE_M * y_noise,
-            wrap_angle_rad(angle_rad + math.pi / 2 + NOISE_RAD * turn_noise),
+            (place.west_m + place.east_m) / 2 + radius_m * math.cos(angle_rad),
+            (place.south_m + place.north_m) / 2 + radius_m * math.sin(angle_rad),
+            angle_rad + math.pi / 2,
         )
-        return TrackedPose(robot.id, pose, t_ns)
+        return TrackedPose(robot.id, measured(pose, self._rng), t_ns)
 
 
 class TruthOfRun:
     """The true places of a simulated run's robots, as the run publishes them."""
 
-    def __init__(self, inbox: Inbox) -> None:
+    def __init__(self, inbox: Inbox, rng: np.random.Generator) -> None:
         self._inbox = inbox
+        self._rng = rng
 
     @classmethod
     @contextmanager
-    def of(cls, endpoint: str) -> Iterator[TruthOfRun]:
+    def of(cls, endpoint: str, rng: np.random.Generator) -> Iterator[TruthOfRun]:
         """Listens to the run's server for as long as the block lasts."""
         with Session(SessionSettings(endpoint)) as session:
-            yield cls(session.inbox(topics.TRUTH.key(), topics.TRUTH.delivery, keep_all=True))
+            yield cls(session.inbox(topics.TRUTH.key(), topics.TRUTH.delivery, keep_all=True), rng)
 
     def poses(self, t_ns: int) -> list[TrackedPose]:
         return [self._tracked(sample, t_ns) for sample in self._inbox.poll()]
 
-    @staticmethod
-    def _tracked(sample: WireSample, t_ns: int) -> TrackedPose:
+    def _tracked(self, sample: WireSample, t_ns: int) -> TrackedPose:
         found = topics.topic_of(sample.key)
         truth = decode(pb.Truth, sample.payload)
-        return TrackedPose(found[1] if found else "", Pose(truth.x_m, truth.y_m, truth.theta_rad), t_ns)
+        true_pose = Pose(truth.x_m, truth.y_m, truth.theta_rad)
+        return TrackedPose(found[1] if found else "", measured(true_pose, self._rng), t_ns)
+
+
+def measured(pose: Pose, rng: np.random.Generator) -> Pose:
+    """A pose as a good tracking system measures it."""
+    x_noise, y_noise, turn_noise = rng.standard_normal(3).tolist()
+    return Pose(
+        pose.x_m + NOISE_M * x_noise,
+        pose.y_m + NOISE_M * y_noise,
+        wrap_angle_rad(pose.theta_rad + NOISE_RAD * turn_noise),
+    )

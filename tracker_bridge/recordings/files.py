@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import gzip
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -28,7 +29,7 @@ def read_recording(path: Path) -> Recording:
         if is_it(rows):
             try:
                 recording = read(rows)
-            except (ValueError, LookupError, StopIteration) as error:
+            except (ValueError, LookupError, ArithmeticError, StopIteration) as error:
                 raise UserError(f"{path}: not a sound {name}: {error!r}") from error
             except UserError as error:
                 raise UserError(f"{path}: {error}") from error
@@ -41,10 +42,13 @@ def _rows(path: Path) -> Rows:
     try:
         data = path.read_bytes()
         lines = (gzip.decompress(data) if path.suffix == ".gz" else data).decode("utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError, EOFError) as error:
+    except (OSError, UnicodeDecodeError, EOFError, zlib.error) as error:
         raise UserError(f"{path}: cannot be read as text: {error}") from error
     separator = "\t" if lines and "\t" in lines[0] else ","
-    return list(csv.reader(lines, delimiter=separator))
+    try:
+        return list(csv.reader(lines, delimiter=separator))
+    except csv.Error as error:
+        raise UserError(f"{path}: cannot be read as a table: {error}") from error
 
 
 def _not_empty(path: Path, recording: Recording) -> Recording:
