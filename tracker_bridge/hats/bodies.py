@@ -21,6 +21,8 @@ DRIFT_M_PER_S = 0.06
 """The gate's growth while a body is not seen: half an e-puck's speed, for it may brake or turn."""
 PLACE_GAIN, SPEED_GAIN = 0.6, 0.15
 """Of the alpha-beta filter that predicts; robots change speed within several clouds, noise within one."""
+LEAST_STEP_S = 0.002
+"""No tracker sends more than 500 clouds a second; two with nearly one time show a clock that was set."""
 LIMITS = {2: 15.1, 3: 21.1, 4: 25.7}
 """Largest sums of squares in units of the noise's variance by pins seen: chi-squared with 2 k - 3 degrees
 of freedom is above them once in 10,000."""
@@ -77,8 +79,8 @@ class Body:
         beside = middle - expected
         turned_rad = cmath.phase(cmath.exp(1j * (angle_rad - expected_rad)))
         self.middle, self.angle_rad = expected + PLACE_GAIN * beside, expected_rad + PLACE_GAIN * turned_rad
-        self.velocity_m_s += SPEED_GAIN * beside / ahead_s
-        self.spin_rad_s += SPEED_GAIN * turned_rad / ahead_s
+        self.velocity_m_s += SPEED_GAIN * beside / max(ahead_s, LEAST_STEP_S)
+        self.spin_rad_s += SPEED_GAIN * turned_rad / max(ahead_s, LEAST_STEP_S)
         self.seen_ns = t_ns
 
 

@@ -43,7 +43,7 @@ class HatHistory:
             if other != hat and own is not None and abs(last - place) < SAME_PLACE_M < abs(own - place):
                 self._place_of[hat] = other
                 if self._place_of.get(other) == hat:
-                    names = (self.hats[other].name, name)
+                    names = tuple(sorted((self.hats[other].name, name)))
                     events.append(
                         HatEvent("swap", f"hats {names[0]} and {names[1]} have swapped places", names)
                     )
