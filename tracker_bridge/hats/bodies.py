@@ -47,6 +47,8 @@ class Body:
     sightings: int = 0
     doubt_m2: float = 0.0
     """Moving average of the sum of squared residuals of sightings with all pins."""
+    sure_ns: int = 0
+    """When three or more of its pins were last seen."""
     pin_seen_ns: list[int] = field(default_factory=list)
 
     @classmethod
@@ -55,7 +57,7 @@ class Body:
         middle = complex(points.mean())
         pins = np.full(MOST_PINS, np.nan, dtype=np.complex128)
         pins[: len(points)] = points - middle
-        return cls(pins, middle, 0.0, t_ns)
+        return cls(pins, middle, 0.0, t_ns, sure_ns=t_ns)
 
     @property
     def size(self) -> int:

@@ -28,6 +28,10 @@ Numbers = npt.NDArray[np.int64]
 
 HELD_NS = NS_PER_S // 5
 """A body that is not seen for longer is given up; in this time an e-puck goes 26 mm, less than its radius."""
+TWO_PINS_NS = NS_PER_S
+"""For so long a body may be followed by two pins alone: two markers at a distance are of many hats."""
+NEAR_HAT = 1.5
+"""In radii of the largest hat: a point so near to a hat that lacks a pin may be of a hat in its place."""
 SURE = 20.0
 """Logarithm of the likelihoods' ratio at which a group is named: wrong by chance once in 5e8."""
 FEWEST_SIGHTINGS = {4: 3, 3: 100}
@@ -86,7 +90,10 @@ class HatTracker:
         """Take a believed sighting into a body's motion and into the evidence about its name."""
         body, markers = self._bodies[number], sightings.markers[number]
         body.move(complex(sightings.middles[number]), float(sightings.angles_rad[number]), t_ns)
-        whole = int((markers >= 0).sum()) == body.size
+        seen = int((markers >= 0).sum())
+        whole = seen == body.size
+        if seen >= 3:
+            body.sure_ns = t_ns
         if body.hat is None:
             return self._consider(body, points[markers[: body.size]], t_ns) if whole else []
         if whole:
@@ -132,7 +139,7 @@ class HatTracker:
             middle, angle_rad = complex(sightings.middles[number]), float(sightings.angles_rad[number])
             if body.hat is None:
                 continue
-            if seen < body.size and _beside(middle, free, self._reach_m):
+            if seen < body.size and _beside(middle, free, NEAR_HAT * self._reach_m):
                 body.doubt_m2 += DOUBT_GAIN * (ANOTHER_HAT * self._noise_m**2 - body.doubt_m2)
                 continue
             pose = Pose(middle.real, middle.imag, wrap_angle_rad(angle_rad))
@@ -144,7 +151,7 @@ class HatTracker:
         """Drop bodies that are lost or doubted, and groups of three beside which a fourth marker appeared."""
         events, kept = [], []
         for body in self._bodies:
-            lost = t_ns - body.seen_ns > HELD_NS
+            lost = t_ns - body.seen_ns > HELD_NS or t_ns - body.sure_ns > TWO_PINS_NS
             doubted = body.doubt_m2 > LARGEST_DOUBT * self._noise_m**2
             if body.hat is not None and (lost or doubted):
                 events.append(self._history.left(body.hat, body.middle, "lost" if lost else "doubted"))
