@@ -30,8 +30,9 @@ HELD_NS = NS_PER_S // 5
 """A body that is not seen for longer is given up; in this time an e-puck goes 26 mm, less than its radius."""
 TWO_PINS_NS = NS_PER_S
 """For so long a body may be followed by two pins alone: two markers at a distance are of many hats."""
-NEAR_HAT = 1.5
-"""In radii of the largest hat: a point so near to a hat that lacks a pin may be of a hat in its place."""
+NEAR_HAT = {2: 3.0, 3: 1.5}
+"""By the pins seen, in radii of the largest hat: a point so near to a hat that lacks pins may be of a hat in
+its place. By two pins the hat's middle may be wrong by more than a radius."""
 SURE = 20.0
 """Logarithm of the likelihoods' ratio at which a group is named: wrong by chance once in 5e8."""
 FEWEST_SIGHTINGS = {4: 3, 3: 100}
@@ -40,6 +41,8 @@ GROUP_NOISES = 4.0
 """Markers of a new group fit a pattern to so many standard deviations."""
 MEAN_MISFIT, LARGEST_DOUBT, ANOTHER_HAT = 9.0, 12.0, 25.0
 """In units of the noise's variance; 5 is expected of four pins and 25 or more of another hat's."""
+POOR_FIT, BETTER_FIT = 11.0, 2.0
+"""Worse than 95 of 100 sightings of the hat itself, and by so many times better: then it is another's."""
 DOUBT_GAIN = 0.1
 """Of the moving average of misfits, whose standard deviation is then 0.7 of those units."""
 
@@ -77,9 +80,10 @@ class HatTracker:
         free = np.ones(len(points), dtype=np.bool_)
         if self._bodies:
             sightings = sight(self._bodies, points, t_ns, self._noise_m)
-            explained = sightings.markers[sightings.believed]
-            free[explained[explained >= 0]] = False
-            tracked = self._tracked(sightings, points[free])
+            free = _unexplained(points, sightings.markers[sightings.believed])
+            named = np.array([body.hat is not None for body in self._bodies])
+            unnamed = _unexplained(points, sightings.markers[sightings.believed & named])
+            tracked = self._tracked(sightings, points, points[unnamed])
             for number in np.flatnonzero(sightings.believed):
                 events += self._see(int(number), sightings, points, t_ns)
         events += self._give_up(points[free], t_ns)
@@ -130,22 +134,31 @@ class HatTracker:
         body.doubt_m2 = 5 * self._noise_m**2  # what is expected of four pins
         body.pin_seen_ns = [t_ns] * MOST_PINS
 
-    def _tracked(self, sightings: Sightings, free: Points) -> list[TrackedHat]:
-        """Believed sightings of named bodies. One that lacks a pin beside a point that nothing explains may
-        be another hat, and is left out."""
+    def _tracked(self, sightings: Sightings, points: Points, unnamed: Points) -> list[TrackedHat]:
+        """Believed sightings of named bodies, without those that may show another hat in its place;
+        `unnamed` are the points that are of no named body."""
         tracked = []
         for number in np.flatnonzero(sightings.believed):
-            body, seen = self._bodies[number], int(sightings.seen[number])
-            middle, angle_rad = complex(sightings.middles[number]), float(sightings.angles_rad[number])
+            body, markers = self._bodies[number], sightings.markers[number]
+            middle, misfit_m2 = complex(sightings.middles[number]), float(sightings.misfits_m2[number])
             if body.hat is None:
                 continue
-            if seen < body.size and _beside(middle, free, NEAR_HAT * self._reach_m):
+            if self._may_be_another(middle, misfit_m2, points[markers[markers >= 0]], unnamed):
                 body.doubt_m2 += DOUBT_GAIN * (ANOTHER_HAT * self._noise_m**2 - body.doubt_m2)
                 continue
-            pose = Pose(middle.real, middle.imag, wrap_angle_rad(angle_rad))
-            residual_m = float(sightings.misfits_m2[number] / seen) ** 0.5
-            tracked.append(TrackedHat(self._history.hats[body.hat].name, pose, residual_m, seen))
+            pose = Pose(middle.real, middle.imag, wrap_angle_rad(float(sightings.angles_rad[number])))
+            seen = int(sightings.seen[number])
+            name = self._history.hats[body.hat].name
+            tracked.append(TrackedHat(name, pose, (misfit_m2 / seen) ** 0.5, seen))
         return tracked
+
+    def _may_be_another(self, middle: complex, misfit_m2: float, group: Points, unnamed: Points) -> bool:
+        """Whether a pin is missing beside a point that is of no named body, or the group fits badly and
+        another hat, or another order of the pins, better."""
+        if len(group) < MOST_PINS:
+            return _beside(middle, unnamed, NEAR_HAT[len(group)] * self._reach_m)
+        is_poor = misfit_m2 > POOR_FIT * self._noise_m**2
+        return is_poor and float(self._catalogue.misfits_m2(group).min()) < misfit_m2 / BETTER_FIT
 
     def _give_up(self, free: Points, t_ns: int) -> list[HatEvent]:
         """Drop bodies that are lost or doubted, and groups of three beside which a fourth marker appeared."""
@@ -168,6 +181,13 @@ class HatTracker:
                 members = left[list(group)]
                 self._bodies.append(Body.of_group(points[members], t_ns))
                 free[members] = False
+
+
+def _unexplained(points: Points, markers: Numbers) -> Mask:
+    """(n,): which points are of none of some bodies; -1 is a pin that is not seen."""
+    free = np.ones(len(points), dtype=np.bool_)
+    free[markers[markers >= 0]] = False
+    return free
 
 
 def _beside(middle: complex, free: Points, reach_m: float) -> bool:
