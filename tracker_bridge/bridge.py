@@ -7,7 +7,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.runtime.node import Node
 from tracker_bridge.backends.datagrams import Receiving
-from tracker_bridge.backends.interface import Backend, TrackedPose
+from tracker_bridge.backends.interface import Backend, Telling, TrackedPose
 from tracker_bridge.plausibility import Plausibility
 
 LOST_AFTER_NS = 2 * NS_PER_S
@@ -33,6 +33,9 @@ class Bridge:
             if seen_ns is not None and t_ns - seen_ns > LOST_AFTER_NS:
                 self._seen_ns[robot] = None
                 self._report("lost", f"{robot}: no believable pose for {LOST_AFTER_NS // NS_PER_S} s")
+        if isinstance(self._backend, Telling):
+            for name, text in self._backend.told():
+                self._report(name, text)
         if isinstance(self._backend, Receiving):
             self._tell_of_datagrams(self._backend)
 

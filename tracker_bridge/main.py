@@ -28,14 +28,15 @@ def main() -> None:
 
 def call(words: list[str]) -> None:
     """Do what a verb says, or, without one, pass poses on."""
-    if not words or words[0] not in VERBS:
+    verb = next((verb for verb in (" ".join(words[:2]), *words[:1]) if verb in VERBS), None)
+    if verb is None:
         run(_parser().parse_args(words))
         return
-    verb = import_module(f"tracker_bridge.commands.{words[0]}")
-    about = {"prog": f"tracker-bridge {words[0]}", "description": VERBS[words[0]]}
+    command = import_module(f"tracker_bridge.commands.{verb.replace(' ', '_')}")
+    about = {"prog": f"tracker-bridge {verb}", "description": VERBS[verb]}
     parser = OneLineParser(**about, conflict_handler="resolve")  # a verb's --version may be a protocol's
-    verb.add_arguments(parser)
-    verb.run(parser.parse_args(words[1:]))
+    command.add_arguments(parser)
+    command.run(parser.parse_args(words[len(verb.split()) :]))
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -55,7 +56,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _parser() -> OneLineParser:
-    verbs = "\n".join(f"  tracker-bridge {verb:<10} {meaning}" for verb, meaning in VERBS.items())
+    verbs = "\n".join(f"  tracker-bridge {verb:<17} {meaning}" for verb, meaning in VERBS.items())
     parser = OneLineParser(
         prog="tracker-bridge",
         description="The process beside the tracking system: it tells each robot where that robot is.\n"

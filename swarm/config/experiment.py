@@ -128,7 +128,7 @@ class TrackerSettings:
     options: tuple[str, ...] = ()
     """More settings of that library, each as `name=value`."""
     file: str = ""
-    """The recording that the `replay` backend plays: a system's CSV export, or a log."""
+    """What `replay` plays (a CSV export, or a log), or the tags and cameras of `overhead`, or the hats."""
     axes: str = "x y z"
     """The system's axes that point to the arena's east, north and up: `x -z y` if its y is up."""
     unit_m: Annotated[float, Between(0, 100)] = 0.0

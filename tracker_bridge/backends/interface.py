@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from swarm.config.experiment import Experiment
 from swarm.geometry import Pose
@@ -47,6 +47,14 @@ class Backend(Protocol):
         Called at every tick with the run's time; it never waits. Coordinates are already those of the
         arena frame, in metres and radians.
         """
+
+
+@runtime_checkable
+class Telling(Protocol):
+    """A backend that also has events to tell, such as two robots that swapped."""
+
+    def told(self) -> list[tuple[str, str]]:
+        """Each event since the last call, by its name and its text."""
 
 
 @dataclass(frozen=True)

@@ -1,1 +1,1 @@
-"""Tracking systems played by this project, in their own bytes, so that a laboratory can rehearse."""
+"""Tracking systems played by this project, so that a laboratory can rehearse."""
