@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TypeVar
 
 from google.protobuf.message import Message
@@ -14,11 +14,13 @@ from server.hubs.clock_watch import ClockWatch
 from server.hubs.hub import Batch
 from swarm.clock import WallClock
 from swarm.config.experiment import Experiment
+from swarm.logs.ending import Sender
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
-from swarm.messages.topics import Delivery, Topic, topic_of
-from swarm.runtime.liveliness import ALIVE_ROBOTS_AND_TRACKERS
+from swarm.messages.topics import ACCOUNT, Delivery, Topic, topic_of
+from swarm.runtime.account import unpack_account
+from swarm.runtime.liveliness import ALIVE_ROBOTS_AND_TRACKERS, present
 from swarm.runtime.node import LivePublisher
 from swarm.runtime.zenoh_session import QUEUE_DEPTH, Session, WireSample
 
@@ -26,6 +28,8 @@ M = TypeVar("M", bound=Message)
 
 NAMED_EVERY_S = 5.0
 """Who is waited for is named so often: a person sees it, and it fills no screen."""
+LAST_WORDS_S = 10.0
+"""Real seconds for the closing accounts. An agent gives its own within a tick, on a busy machine later."""
 EVERYTHING = ("robot/**", "tracker/**", "run/**", "server/**", "sim/**")
 
 
@@ -52,6 +56,10 @@ class LiveHub:
         self._clocks = ClockWatch(clock.speed, self._tell)
         self._early: deque[Item] = deque(maxlen=QUEUE_DEPTH)
         self._ended = False
+        self._closing = session.inbox(ACCOUNT.format(name="*"), Delivery.EVERY)
+        self._accounts: dict[Sender, int] = {}
+        self._gone: set[int] = set()
+        """Epochs of the processes that have given their closing account."""
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
 
@@ -74,16 +82,16 @@ class LiveHub:
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         self._live.publish(topic, message, robot)
-        if isinstance(message, pb.RunState):
-            self._ended = message.phase == pb.RunState.ENDED
+        if isinstance(message, pb.RunState) and message.phase == pb.RunState.ENDED:
+            self._ended = True
 
     def advance(self) -> None:
         """In real time the processes need no leave."""
 
     def gather(self) -> Batch:
         t_ns = next(self._ticks)
-        self._check()
         if not self._ended:  # At the end everyone leaves, which is nothing to tell of.
+            self._check()
             self._attendance.look()
         items = [*self._early, *self._arrived()]
         self._early.clear()
@@ -94,8 +102,28 @@ class LiveHub:
         """What has arrived by now: the server's own messages come back over the wire like any other."""
         return Batch(self._clock.now_ns(), list(self._arrived()))
 
-    def finish(self) -> None:
-        """The run's state ENDED has told the robots already."""
+    def finish(self) -> Batch:
+        """The run's state ENDED has told the processes already: wait until they have given account."""
+        leaving = {one.epoch for kind in ("robot", "tracker") for one in present(self._session, kind)}
+        deadline_s = time.monotonic() + LAST_WORDS_S
+        self._hear_accounts()
+        while leaving - self._gone and time.monotonic() < deadline_s:
+            next(self._ticks)
+            self._hear_accounts()
+        return self.unsent()
+
+    def accounts(self) -> Mapping[Sender, int]:
+        """What the processes that have left said, and what the server itself has sent."""
+        own = {(key, self._live.epoch): last for key, last in self._live.sent.items()}
+        return {sender: last for sender, last in (self._accounts | own).items() if _is_logged(sender[0])}
+
+    def _hear_accounts(self) -> None:
+        for sample in self._closing.poll():
+            header = Header.unpack(sample.attachment)
+            if header is not None:
+                self._gone.add(header.epoch)
+                for key, last in unpack_account(sample.payload).items():
+                    self._accounts[key, header.epoch] = last
 
     def _tell(self, name: str, text: str, level: pb.Event.Level.ValueType) -> None:
         """An event in the log, and a line for whoever watches unless it is only for the log."""
@@ -119,3 +147,9 @@ class LiveHub:
 def _must_not_be_lost(key: str) -> bool:
     found = topic_of(key)
     return found is not None and found[0].delivery is Delivery.EVERY
+
+
+def _is_logged(key: str) -> bool:
+    """Whether a key's messages enter the log."""
+    found = topic_of(key)
+    return found is not None and found[0].logged
