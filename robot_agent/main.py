@@ -10,6 +10,7 @@ from pathlib import Path
 from robot_agent.agent import Agent
 from robot_agent.assembly import Assembly
 from robot_agent.checkpoint import Checkpoint
+from swarm.config.arguments import place
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, guarded, nearest
 from swarm.runtime.process import (
@@ -98,13 +99,13 @@ def _parser() -> OneLineParser:
     parser.add_argument("--robot", default="", metavar="ID[,ID...]", help="which robot this is")
     parser.add_argument(
         "--state",
-        type=Path,
+        type=place,
         metavar="DIR",
         help="keep what was learnt here; go on from it after a restart",
     )
     parser.add_argument(
         "--keys",
-        type=Path,
+        type=place,
         metavar="FILE",
         help="write every key of which a message was received here at the end, one a line",
     )

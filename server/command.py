@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
@@ -16,6 +15,7 @@ from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
 from swarm.cli.output import print_json
+from swarm.config import arguments
 from swarm.config.experiment import Experiment
 from swarm.runtime.process import OneLineParser, leave_on_signals
 from swarm.runtime.zenoh_session import Session, SessionSettings
@@ -26,22 +26,22 @@ def run() -> None:
     conduct(_parser().parse_args())
 
 
-def conduct(arguments: argparse.Namespace) -> None:
+def conduct(asked: argparse.Namespace) -> None:
     """Conduct the experiment's trials on simulated robots or, with --listen, on a laboratory's."""
     leave_on_signals()
-    experiment = Experiment.load(arguments.experiment)
-    experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
+    experiment = Experiment.load(asked.experiment)
+    experiment = experiment.changed(asked.seed, asked.moves, asked.processes)
     with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
         trials: Sequence[int] = range(experiment.run.trials)
-        environment: Environment = partial(simulated, experiment, arguments.speed, progress.warn)
-        if arguments.listen:
-            settings = SessionSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
+        environment: Environment = partial(simulated, experiment, asked.speed, progress.warn)
+        if asked.listen:
+            settings = SessionSettings(asked.listen, hub=True, config=asked.zenoh_config)
             session = open_session.enter_context(Session(settings))
-            trials = [arguments.trial]
+            trials = [asked.trial]
             environment = partial(laboratory, experiment, session, progress.warn)
-        directory = RunDirectory.create(arguments.out, experiment.run.name)
-        summary = Run(experiment, arguments.experiment, directory, environment, trials, progress).run()
-    if arguments.json:
+        directory = RunDirectory.create(asked.out, experiment.run.name)
+        summary = Run(experiment, asked.experiment, directory, environment, trials, progress).run()
+    if asked.json:
         print_json(summary)
     else:
         print_summary(summary)
@@ -54,17 +54,19 @@ def _parser() -> OneLineParser:
         "starts, or with --listen on the robots of a laboratory.",
     )
     parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="what is run")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="a new directory (runs/NAME-001 and so on)")
-    parser.add_argument("--seed", type=_at_least(0), metavar="N", help="in place of the experiment's")
-    parser.add_argument("--moves", type=_at_least(1), metavar="N", help="in place of the experiment's")
+    parser.add_argument(
+        "--out", type=arguments.place, metavar="DIR", help="a new directory (runs/NAME-001 and so on)"
+    )
+    parser.add_argument("--seed", type=arguments.seed, metavar="N", help="in place of the experiment's")
+    parser.add_argument("--moves", type=arguments.moves, metavar="N", help="in place of the experiment's")
     parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
     simulation = parser.add_argument_group("simulation")
     simulation.add_argument(
-        "--processes", type=_at_least(0), metavar="N", help="for the robots; 0 gives each its own"
+        "--processes", type=arguments.processes, metavar="N", help="for the robots; 0 gives each its own"
     )
     simulation.add_argument(
         "--speed",
-        type=_speed,
+        type=arguments.pace_or_max,
         metavar="max|X",
         help="max: lockstep, as fast as possible, repeatable (the default); X: so many times as fast as life",
     )
@@ -76,7 +78,7 @@ def _parser() -> OneLineParser:
     )
     real.add_argument(
         "--trial",
-        type=_at_least(0),
+        type=arguments.trial,
         default=0,
         metavar="N",
         help="a laboratory runs one trial at a time, from 0; the agents are started with the same number",
@@ -85,28 +87,3 @@ def _parser() -> OneLineParser:
         "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"
     )
     return parser
-
-
-def _at_least(low: int) -> Callable[[str], int]:
-    def whole_number(text: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            value = low - 1
-        if not low <= value < 2**63:
-            raise argparse.ArgumentTypeError(f"{text!r} is no whole number of at least {low}")
-        return value
-
-    return whole_number
-
-
-def _speed(text: str) -> float | None:
-    if text == "max":
-        return None
-    try:
-        speed = float(text)
-    except ValueError:
-        speed = math.nan
-    if not 0.01 <= speed <= 1000:
-        raise argparse.ArgumentTypeError(f"{text!r} is neither max nor a number from 0.01 to 1000")
-    return speed

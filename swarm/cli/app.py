@@ -53,13 +53,19 @@ app.command("check")(check_command)
 app.command("recover")(recover_command)
 
 
+def _help_of(error: typer.TyperException) -> str:
+    """The command whose help tells more: the verb's, if the error is about one."""
+    context = getattr(error, "ctx", None)
+    return f"{context.command_path if context else 'swarm'} --help"
+
+
 def run() -> None:
     """Parse the command line and run the verb; a bad call becomes a UserError."""
     try:
         code = app(standalone_mode=False, prog_name="swarm")
     except typer.TyperException as error:
-        what = " ".join(str(error).split()) or "a verb is missing"
-        raise UserError(f"{what} (see `swarm --help`)") from error
+        what = " ".join(error.format_message().split()).rstrip(".") or "a verb is missing"
+        raise UserError(f"{what} (see `{_help_of(error)}`)") from error
     except typer.Abort as error:
         raise KeyboardInterrupt from error
     sys.exit(code or 0)

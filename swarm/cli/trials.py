@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from swarm.cli.output import print_json
+from swarm.cli.values import good_place
+from swarm.config.limits import LARGEST_SEED, MOST_MOVES
 from swarm.errors import UserError
 from swarm.extras import require_extra
 from swarm.parallel import available_cores
@@ -75,10 +77,12 @@ def trials_command(
     experiment: Annotated[Path, typer.Argument(help="An experiment file, such as deploy/sim/expert.toml.")],
     trials: Annotated[int, typer.Option(min=1, help="Trials of each condition.")] = 100,
     moves: Annotated[
-        int | None, typer.Option(help="Moves of each learner.", show_default="the file's")
+        int | None,
+        typer.Option(min=1, max=MOST_MOVES, help="Moves of each learner.", show_default="the file's"),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="The root of all randomness.", show_default="the file's")
+        int | None,
+        typer.Option(min=0, max=LARGEST_SEED, help="The root of all randomness.", show_default="the file's"),
     ] = None,
     copies: Annotated[
         Path | None,
@@ -98,7 +102,10 @@ def trials_command(
         ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Where results go: a new directory.", show_default="runs/trials/NAME")
+        Path | None,
+        typer.Option(
+            help="Where results go: a new directory.", show_default="runs/trials/NAME", callback=good_place
+        ),
     ] = None,
     jobs: Annotated[
         int | None, typer.Option(min=1, help="Trials at a time.", show_default="all cores")

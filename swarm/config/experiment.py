@@ -14,6 +14,7 @@ from typing import Annotated
 
 import numpy as np
 
+from swarm.config.limits import LARGEST_SEED, MOST_MOVES, MOST_PROCESSES
 from swarm.config.toml_files import Between, ConfigFile
 from swarm.errors import nearest
 from swarm.geometry import Compartment, Grid, Pose
@@ -43,11 +44,11 @@ class RunSettings:
 
     name: str
     """The run's name, an id: it also names the run's directory."""
-    moves: Annotated[int, Between(1, 10_000_000)] = 15_000
+    moves: Annotated[int, Between(1, MOST_MOVES)] = 15_000
     """Moves of each learner in a trial; the paper's 15,000 take about 10 hours on robots."""
     trials: Annotated[int, Between(1, 10_000)] = 1
     """Repetitions, each with new robots and random numbers of its own."""
-    seed: Annotated[int, Between(0, 2**63 - 1)] = 1
+    seed: Annotated[int, Between(0, LARGEST_SEED)] = 1
     """The one root of all randomness; the same seed gives the same log."""
 
 
@@ -169,7 +170,7 @@ class SimulationSettings:
     ticks_per_exchange: Annotated[int, Between(1, 10)] = 2
     """Ticks that the processes of a lockstep make before they exchange messages; fewer if a camera takes more
     frames. A pose comes two exchanges late, 0.4 s; with 1 it is 0.2 s, and a run takes half as long again."""
-    processes: Annotated[int, Between(0, 1000)] = 0
+    processes: Annotated[int, Between(0, MOST_PROCESSES)] = 0
     """Processes that host the robots; 0 gives each robot its own, as on hardware."""
 
 
@@ -319,7 +320,8 @@ def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, f
     if robot.watches and robot.role is not Role.LEARNER:
         raise file.error(where, f"{robot.id!r} is no learner: it cannot watch")
     if robot.watches and robot.watches not in known:
-        raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {nearest(robot.watches, known)}")
+        whom = nearest(robot.watches, known) if known else "there is no other robot"
+        raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {whom}")
 
 
 def _check_place(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:

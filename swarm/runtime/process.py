@@ -17,6 +17,7 @@ from types import FrameType
 from typing import Any, NoReturn
 
 from swarm.clock import scaled_clock, unix_clock
+from swarm.config import arguments as values
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.runtime.liveliness import Presence, claim
@@ -60,10 +61,10 @@ def add_common_arguments(parser: argparse.ArgumentParser) -> None:
     simulated.add_argument("--process", default="", help="the name of this process in a lockstep run")
     simulated.add_argument("--lockstep", action="store_true", help="step when the server says so")
     simulated.add_argument("--started-ns", type=int, default=0, help="monotonic time at which the run began")
-    simulated.add_argument("--speed", type=float, default=1.0, help="how many times as fast as life")
-    simulated.add_argument("--trial", type=int, default=0, help="the number of the trial, from 0")
-    simulated.add_argument("--seed", type=int, default=None, help="in place of the experiment's")
-    simulated.add_argument("--moves", type=int, default=None, help="in place of the experiment's")
+    simulated.add_argument("--speed", type=values.pace, default=1.0, help="how many times as fast as life")
+    simulated.add_argument("--trial", type=values.trial, default=0, help="the number of the trial, from 0")
+    simulated.add_argument("--seed", type=values.seed, default=None, help="in place of the experiment's")
+    simulated.add_argument("--moves", type=values.moves, default=None, help="in place of the experiment's")
 
 
 def load_experiment(arguments: argparse.Namespace) -> Experiment:
