@@ -10,6 +10,9 @@ from pathlib import Path
 from robot_agent.agent import Agent
 from robot_agent.assembly import Assembly
 from robot_agent.checkpoint import Checkpoint
+from robot_agent.checks import robot_checks
+from swarm.checkup.finding import require_good
+from swarm.checkup.machine import writable
 from swarm.config.arguments import place
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, guarded, nearest
@@ -45,6 +48,7 @@ def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and step the robots until the run ends or the process is told to leave."""
     experiment = load_experiment(arguments)
     names = _names(arguments.robot, experiment)
+    _check(arguments, experiment, names)
     leave_on_signals()
     with joined(arguments, "robot", names, experiment.simulation.tick_s) as node:
         assembly = Assembly(experiment, node, arguments.trial)
@@ -59,6 +63,14 @@ def run(arguments: argparse.Namespace) -> None:
             _stop(agents)
             if arguments.keys:
                 _write_keys(arguments.keys, node.keys_received)
+
+
+def _check(arguments: argparse.Namespace, experiment: Experiment, names: list[str]) -> None:
+    """UserError about what would stop these robots once they are under way."""
+    robots = tuple(experiment.robot_named(name) for name in names)
+    require_good(arguments.experiment, robot_checks(experiment, robots))
+    if arguments.state:
+        require_good(arguments.experiment, [writable("--state", arguments.state)])
 
 
 def _step(agents: list[Agent], t_ns: int) -> None:

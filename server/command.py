@@ -14,9 +14,13 @@ from server.processes.environment import Environment, laboratory, simulated
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
+from swarm.checkup.checkup import experiment_findings, findings
+from swarm.checkup.finding import Level, require_good
+from swarm.checkup.machine import room
 from swarm.cli.output import print_json
 from swarm.config import arguments
 from swarm.config.experiment import Experiment
+from swarm.errors import UserError
 from swarm.runtime.process import OneLineParser, leave_on_signals
 from swarm.runtime.zenoh_session import Session, SessionSettings
 
@@ -31,6 +35,7 @@ def conduct(asked: argparse.Namespace) -> None:
     leave_on_signals()
     experiment = Experiment.load(asked.experiment)
     experiment = experiment.changed(asked.seed, asked.moves, asked.processes)
+    _check(asked, experiment)
     with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
         trials: Sequence[int] = range(experiment.run.trials)
         environment: Environment = partial(simulated, experiment, asked.speed, progress.warn)
@@ -38,6 +43,7 @@ def conduct(asked: argparse.Namespace) -> None:
             settings = SessionSettings(asked.listen, hub=True, config=asked.zenoh_config)
             session = open_session.enter_context(Session(settings))
             trials = [asked.trial]
+            _warn_of_bad(experiment, progress)
             environment = partial(laboratory, experiment, session, progress.warn)
         directory = RunDirectory.create(asked.out, experiment.run.name)
         summary = Run(experiment, asked.experiment, directory, environment, trials, progress).run()
@@ -45,6 +51,27 @@ def conduct(asked: argparse.Namespace) -> None:
         print_json(summary)
     else:
         print_summary(summary)
+
+
+def _check(asked: argparse.Namespace, experiment: Experiment) -> None:
+    """UserError about what would stop the run once it was under way; nothing has been made yet.
+
+    What a laboratory's boards have is looked at again on the boards, by their agents.
+    """
+    if asked.listen and asked.speed is not None:
+        raise UserError("--speed is for simulations: with --listen a run goes as fast as life")
+    if asked.listen:
+        out = asked.out or Path("runs") / experiment.run.name
+        require_good(asked.experiment, room(experiment, out))
+    else:
+        require_good(asked.experiment, findings(experiment, asked.out))
+
+
+def _warn_of_bad(experiment: Experiment, progress: RunProgress) -> None:
+    """A driver that is not installed here may be so on a board."""
+    for finding in experiment_findings(experiment):
+        if finding.level is Level.BAD:
+            progress.warn(f"{finding.about}: {finding}")
 
 
 def _parser() -> OneLineParser:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
+from swarm.checkup.finding import require_good
 from swarm.errors import guarded
 from swarm.runtime.process import (
     OneLineParser,
@@ -15,6 +16,7 @@ from swarm.runtime.process import (
 )
 from tracker_bridge.backends.registry import backend_named
 from tracker_bridge.bridge import Bridge
+from tracker_bridge.checks import checks
 from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
 
@@ -26,6 +28,7 @@ def main() -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and pass poses on until the run ends or the process is told to leave."""
     experiment = load_experiment(arguments)
+    require_good(arguments.experiment, checks(experiment))
     make_backend = backend_named(experiment.tracker.backend)
     leave_on_signals()
     with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s) as node:

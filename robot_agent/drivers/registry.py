@@ -13,6 +13,11 @@ DRIVERS: dict[str, Callable[[DriverParts], Driver]] = {
 }
 
 
+def driver_names() -> list[str]:
+    """What an experiment file may call a driver."""
+    return list(DRIVERS)
+
+
 def make_driver(parts: DriverParts) -> Driver:
     """The driver that the robot's settings name."""
     name = parts.robot.driver

@@ -10,6 +10,7 @@ import typer
 from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
+from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
 from swarm.cli.recover import recover_command
 from swarm.cli.reproduce import reproduce_command
@@ -43,6 +44,7 @@ def _root(
     """What belongs to no verb."""
 
 
+app.command("doctor")(doctor_command)
 app.command("simulate")(simulate_command)
 app.command("reproduce")(reproduce_command)
 app.command("claims")(claims_command)

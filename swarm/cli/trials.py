@@ -40,6 +40,8 @@ def many_trials(
 ) -> dict[str, Any]:
     """Run the trials, and write picture and tables into a new directory."""
     require_extra("lab", "scipy", "polars", "matplotlib")
+    from swarm.checkup.checkup import experiment_findings
+    from swarm.checkup.finding import require_good
     from swarm.config.experiment import Experiment
     from swarm.surrogate.copies import STORED_COPIES
     from swarm.surrogate.durations import MEASURED_DURATIONS
@@ -47,6 +49,7 @@ def many_trials(
     from swarm.surrogate.trials import PAPER_TRIALS, run_trials, summary, write_tables
 
     experiment = Experiment.load(file).changed(seed=seed, moves=moves)
+    require_good(file, experiment_findings(experiment))
     of_full = _curves_of(full) if full else None
     directory = _new_directory(out)
     many = run_trials(experiment, copies or STORED_COPIES, durations or MEASURED_DURATIONS, trials, jobs)

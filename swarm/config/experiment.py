@@ -322,6 +322,20 @@ def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, f
     if robot.watches and robot.watches not in known:
         whom = nearest(robot.watches, known) if known else "there is no other robot"
         raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {whom}")
+    if robot.watches:
+        _check_observers_place(experiment, robot, file)
+
+
+def _check_observers_place(experiment: Experiment, robot: RobotSettings, file: ConfigFile) -> None:
+    demonstrator, arena = experiment.robot_named(robot.watches), experiment.arena
+    place = experiment.observers_place(demonstrator)
+    if not (0 <= place.x_m <= arena.width_m and 0 <= place.y_m <= arena.height_m):
+        where = ("robot", experiment.robot.index(demonstrator), "south_west_m")
+        raise file.error(
+            where,
+            f"{robot.id!r} would watch {robot.watches!r} from ({place.x_m:.2f}, {place.y_m:.2f}) m, which is "
+            f"off the floor: leave {BEYOND_CORNER_M:g} m east and south of that compartment",
+        )
 
 
 def _check_place(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:

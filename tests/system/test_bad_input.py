@@ -120,3 +120,23 @@ def test_a_second_agent_of_one_id_is_refused_and_both_hosts_are_named(experiment
         line = refused("robot_agent", experiment, "--robot", "loner", "--connect", endpoint)
     assert "robot 'loner' is already alive on host 'other-board'" in line
     assert repr(socket.gethostname()) in line
+
+
+@pytest.mark.parametrize("command", ["swarm simulate", "swarm trials", "robot_agent --robot=loner"])
+def test_every_command_looks_at_the_whole_experiment_before_it_starts(tmp_path: Path, command: str) -> None:
+    file = write_experiment(tmp_path, experiment_text(extra='[camera]\nconditions = "sunny"'))
+    module, *words = command.split()
+    out = ["--out", tmp_path / "run"] if module == "swarm" else []
+    assert "unknown camera conditions 'sunny'" in refused(module, *words, file, *out)
+    assert [path.name for path in tmp_path.iterdir()] == ["small.toml"]
+
+
+def test_state_that_cannot_be_written_is_found_before_the_run(experiment: Path) -> None:
+    line = refused("robot_agent", experiment, "--robot", "loner", "--state", "/proc/state")
+    assert "--state: " in line
+
+
+def test_a_laboratory_has_no_speed(tmp_path: Path, experiment: Path) -> None:
+    options = ("--listen", "tcp/127.0.0.1:0", "--speed", "3", "--out", tmp_path / "run")
+    assert "--speed is for simulations" in refused("server", experiment, *options)
+    assert not (tmp_path / "run").exists()

@@ -26,6 +26,11 @@ BACKENDS: dict[str, MakeBackend] = {"sim": _simulated}
 """[tracker] backend: a new tracking system adds one line."""
 
 
+def backend_names() -> list[str]:
+    """What an experiment file may call a tracking system."""
+    return list(BACKENDS)
+
+
 def backend_named(name: str) -> MakeBackend:
     if name not in BACKENDS:
         raise UserError(f"[tracker] backend is {name!r}; {nearest(name, BACKENDS)}")
