@@ -10,6 +10,7 @@ from server.processes.environment import TrialEnvironment
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
 from server.recording.recorder import Recorder
+from swarm.checkup.machine import require_room
 from swarm.messages import swarm_pb2 as pb
 
 BATCHES_AFTER_THE_END = 3
@@ -95,7 +96,8 @@ class Trial:
             if not self._environment.waits_for_people:
                 self._conductor.check_progress(batch.t_ns)
             self._recorder.flush()
-            self._show(self._conductor, self._t_ns / 1e9)
+            require_room(self._recorder.path.parent)
+            self._show(self._conductor, (self._t_ns - self._began_ns) / 1e9)
 
     def _note_end(self, error: BaseException) -> None:
         """The reason is the log's last message."""

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from swarm.checkup.finding import Finding, bad, good, warning
 from swarm.config.experiment import Experiment
+from swarm.errors import RunFailedError
 
 LAB_MODULES = (
     "foxglove_schemas_protobuf",
@@ -84,9 +85,18 @@ def writable(about: str, directory: Path) -> Finding:
         return bad(
             about, f"{directory} cannot be written to", "choose a directory that this user may write to"
         )
-    if shutil.disk_usage(parent).free < RESERVE_BYTES:
+    if free_bytes(parent) < RESERVE_BYTES:
         return bad(about, f"the disk of {directory} is full", "free some space, or choose another")
     return good(about, f"{directory} can be written to")
+
+
+def require_room(place: Path) -> None:
+    """RunFailedError once the reserve is touched: a run then ends in order, with a log that is closed."""
+    if free_bytes(place) < RESERVE_BYTES:
+        raise RunFailedError(
+            f"the disk of {place} is full but for {_megabytes(RESERVE_BYTES)}: the run ends and its log "
+            "is closed; free some space, and start a new run"
+        )
 
 
 def free_bytes(place: Path) -> int:
