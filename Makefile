@@ -5,7 +5,7 @@ READY := $(VENV)/.ready
 
 DEMO ?= runs/demo-$(shell date +%Y%m%d-%H%M%S)
 
-.PHONY: setup demo test test-all check format coverage site messages docs wheel clean
+.PHONY: setup demo test test-faults test-all check format coverage site messages docs wheel clean
 
 setup: $(READY)
 
@@ -15,6 +15,7 @@ demo: setup
 	$(BIN)/swarm analyze $(DEMO)
 
 $(READY): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, and $(PYTHON) is %d.%d: make PYTHON=python3.11" % sys.version_info[:2])'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
 	touch $@
@@ -30,7 +31,11 @@ format: setup
 	$(BIN)/ruff format .
 
 test: setup check
-	$(BIN)/pytest -m "not long"
+	$(BIN)/pytest -m "not long and not faults"
+
+# Everything that is injected from outside: signals at every instant, settings at the ends of their ranges.
+test-faults: setup
+	$(BIN)/pytest -m faults
 
 test-all: setup check
 	$(BIN)/pytest
@@ -38,7 +43,7 @@ test-all: setup check
 # The tests of `make test`, with the processes that they start; fails below the floor in pyproject.toml.
 coverage: setup
 	$(BIN)/coverage erase
-	$(BIN)/coverage run -m pytest -m "not long"
+	$(BIN)/coverage run -m pytest -m "not long and not faults"
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 

@@ -26,6 +26,7 @@ class TrialResult:
     messages: int
     bad_messages: int
     unknown_keys: dict[str, int]
+    restarted_too_often: dict[str, int]
     slowest_keys: dict[str, float]
 
 
@@ -77,6 +78,7 @@ class Trial:
             messages=self._recorder.messages,
             bad_messages=self._conductor.bad_messages,
             unknown_keys=self._recorder.unknown_keys,
+            restarted_too_often=self._recorder.restarted_too_often,
             slowest_keys=self._health.lowest_share,
         )
 

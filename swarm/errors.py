@@ -31,6 +31,12 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f"did you mean {close[0]!r}?" if close else f"known: {', '.join(names)}"
 
 
+def one_line(text: str, at_most: int = 1000) -> str:
+    """Text that a terminal shows as one line: what cannot be printed as escapes, and an end to it."""
+    printable = "".join(sign if sign.isprintable() else repr(sign)[1:-1] for sign in text)
+    return printable if len(printable) <= at_most else f"{printable[:at_most]}..."
+
+
 def guarded(call: Callable[[], object]) -> int:
     """Run a command; turn its errors into one line on stderr and an exit code, never a traceback.
 
@@ -81,7 +87,7 @@ def _unforeseen(error: Exception) -> str:
     """An error that nobody foresaw, with its place in the source."""
     places = traceback.extract_tb(error.__traceback__)
     at = f" ({os.path.basename(places[-1].filename)}:{places[-1].lineno})" if places else ""
-    text = " ".join(str(error).split())[:200]
+    text = one_line(str(error), 200)
     return (
         f"{type(error).__name__}: {text}{at}; this is a mistake of the program: "
         f"set {TRACEBACK}=1, repeat the command, and report what it prints"
@@ -91,7 +97,7 @@ def _unforeseen(error: Exception) -> str:
 def _said(line: str, code: int) -> int:
     """Print a line where errors go; there may be nowhere."""
     try:
-        print(line, file=sys.stderr, flush=True)
+        print(one_line(line), file=sys.stderr, flush=True)
     except OSError:
         _to_nowhere(2)
     return code

@@ -10,6 +10,9 @@ from tracker_bridge.backends.interface import Backend, TrackedPose
 from tracker_bridge.plausibility import Plausibility
 
 LOST_AFTER_NS = 2 * NS_PER_S
+CARRIED_NS = 2 * NS_PER_S
+"""How long a jump is no surprise after the simulated hand moved a robot: until five poses, a half second and
+what was lost of them, agree that it is there."""
 
 
 class Bridge:
@@ -21,9 +24,13 @@ class Bridge:
         self._node = node
         self._seen_ns: dict[str, int | None] = dict.fromkeys(robots)
         self._refused: dict[str, str] = {}
+        self._carries = node.subscribe(topics.CARRY)
+        self._carried_ns: dict[str, int] = {}
 
     def step(self, t_ns: int) -> None:
         """One tick: pass on what the tracking system measured since the last."""
+        for carry in self._carries.take():
+            self._carried_ns[carry.robot] = carry.header.t_ns
         for tracked in self._backend.poses(t_ns):
             if tracked.robot in self._seen_ns:
                 self._pass_on(tracked)
@@ -35,7 +42,8 @@ class Bridge:
     def _pass_on(self, tracked: TrackedPose) -> None:
         reason = self._plausibility.reason_against(tracked)
         kind = reason.split(" ")[0] if reason else ""
-        if reason and self._refused.get(tracked.robot) != kind:
+        is_news = reason and self._refused.get(tracked.robot) != kind
+        if is_news and not (kind == "jump" and self._was_carried(tracked)):
             self._report("refused", f"{tracked.robot}: {reason}")
         self._refused[tracked.robot] = kind
         if reason:
@@ -46,6 +54,11 @@ class Bridge:
             x_m=pose.x_m, y_m=pose.y_m, theta_rad=pose.theta_rad, captured_t_ns=tracked.captured_t_ns
         )
         self._node.publish(topics.POSE, message, tracked.robot)
+
+    def _was_carried(self, tracked: TrackedPose) -> bool:
+        """Whether a visit has just begun or ended: in a simulation a robot is elsewhere at once."""
+        carried_ns = self._carried_ns.get(tracked.robot)
+        return carried_ns is not None and abs(tracked.captured_t_ns - carried_ns) <= CARRIED_NS
 
     def _report(self, name: str, text: str) -> None:
         self._node.publish(topics.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))

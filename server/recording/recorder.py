@@ -18,6 +18,11 @@ from swarm.messages.topics import topic_of
 CHUNK_BYTES = 256 * 1024
 """Smaller ones compress worse; of a larger one more is lost when the recorder is killed."""
 
+MOST_EPOCHS = 100
+"""Of one key: a robot that restarts more often in a trial is ill, or somebody makes epochs up."""
+MOST_CHANNELS = 60_000
+"""MCAP numbers them with 16 bits; the rest is for views."""
+
 
 class Recorder:
     """One MCAP file of one trial. Payloads are never decoded; schemas are embedded.
@@ -32,10 +37,13 @@ class Recorder:
         self.messages = 0
         self.unknown_keys: dict[str, int] = {}
         """Keys that the key table does not know, with the number of messages that were left out."""
+        self.restarted_too_often: dict[str, int] = {}
+        """Keys of more senders than can be logged, with the number of messages that were left out."""
         self._writer = McapWriter(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._writer.start(profile="", library="swarm-runtime")
         self._schemas: dict[str, int] = {}
         self._channels: dict[tuple[str, int], int | None] = {}
+        self._epochs: dict[str, int] = {}
         self._views: dict[str, int] = {}
         for name, values in metadata.items():
             self._writer.add_metadata(name, dict(values))
@@ -81,17 +89,25 @@ class Recorder:
             self._file.close()
 
     def _registered(self, key: str, epoch: int) -> int | None:
-        """The channel of a key and epoch; None for a key that is not to be logged."""
+        """The channel of a key and epoch; None for a key that is not to be logged, or has too many."""
         found = topic_of(key)
         if found is None or not found[0].logged:
             return None
+        epochs = self._epochs.get(key, 0)
+        if epochs == MOST_EPOCHS or len(self._writer.channels) >= MOST_CHANNELS:
+            return None
+        self._epochs[key] = epochs + 1
         topic, robot = found
         about = {"epoch": str(epoch), "robot": robot, "delivery": topic.delivery.value}
         return self._channel(key, topic.message, about)
 
     def _leave_out(self, key: str) -> None:
-        if topic_of(key) is None:
+        """Count a message, unless its topic is one that is never logged."""
+        found = topic_of(key)
+        if found is None:
             self.unknown_keys[key] = self.unknown_keys.get(key, 0) + 1
+        elif found[0].logged:
+            self.restarted_too_often[key] = self.restarted_too_often.get(key, 0) + 1
 
     def _channel(self, key: str, message: type[Message], about: dict[str, str]) -> int:
         number = len(self._writer.channels) + 1

@@ -16,7 +16,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, TypeVar
 
-from swarm.errors import UserError, nearest
+from swarm.errors import UserError, nearest, one_line
 
 S = TypeVar("S")
 
@@ -37,14 +37,14 @@ class ConfigFile:
         self._lines = _read(path).splitlines()
         try:
             self.values: dict[str, Any] = tomllib.loads("\n".join(self._lines))
-        except tomllib.TOMLDecodeError as error:
-            raise UserError(f"{path}: not valid TOML: {error}") from error
+        except ValueError as error:
+            raise UserError(f"{path}: not valid TOML: {one_line(str(error), LONGEST_ERROR)}") from error
         except RecursionError as error:
             raise UserError(f"{path}: not valid TOML: brackets in brackets, too deep to read") from error
 
     def error(self, where: tuple[str | int, ...], text: str) -> UserError:
         """An error about the key at a place such as ("robot", 1, "id")."""
-        return UserError(f"{self.place(where)}: {text}")
+        return UserError(f"{self.place(where)}: {one_line(text, LONGEST_ERROR)}")
 
     def place(self, where: tuple[str | int, ...]) -> str:
         """File and line of the key at a place."""
@@ -102,7 +102,7 @@ class ConfigFile:
             if not isinstance(value, str) or value not in known:
                 raise self.error(where, f"{name!r} is {_shown(value)}; {nearest(str(value), known)}")
             return known[value]
-        if kind is float and type(value) is int:
+        if kind is float and type(value) is int and abs(value) <= LARGEST_WHOLE:
             value = float(value)
         if type(value) is not kind:
             raise self.error(where, f"{name!r} is a {_WORDS[kind]}, not {_shown(value)}")
@@ -113,11 +113,13 @@ class ConfigFile:
     def _check_number(
         self, name: str, value: float, bounds: Between | None, where: tuple[str | int, ...]
     ) -> None:
-        if not math.isfinite(value):
+        if isinstance(value, float) and not math.isfinite(value):
             raise self.error(where, f"{name!r} is {value}; a finite number is wanted")
         if bounds and not bounds.low <= value <= bounds.high:
             at_most = "" if math.isinf(bounds.high) else f" and at most {bounds.high:g}"
-            raise self.error(where, f"{name!r} is {value}; it has to be at least {bounds.low:g}{at_most}")
+            raise self.error(
+                where, f"{name!r} is {_shown(value)}; it has to be at least {bounds.low:g}{at_most}"
+            )
 
     def _line_of(self, where: tuple[str | int, ...]) -> int:
         """The line of a key, or of the table that it belongs to, counted from 1."""
@@ -142,6 +144,10 @@ class ConfigFile:
 _WORDS = {str: "text", int: "whole number", float: "number", bool: "true or false"}
 
 
+LARGEST_WHOLE = 2**53
+"""Up to here every whole number is a number (IEEE 754), and no setting is larger."""
+LONGEST_ERROR = 400
+"""Characters that an error says beside its place."""
 LONGEST_SHOWN = 60
 """Characters of a value in an error, which is to stay one line that can be read."""
 
@@ -174,7 +180,7 @@ def _read(path: Path) -> str:
     except OSError as error:
         raise UserError(f"{path}: cannot be read as text ({error.strerror})") from error
     except ValueError as error:
-        raise UserError(f"{path}: cannot be read as text ({error})") from error
+        raise UserError(f"{path}: cannot be read as text ({one_line(str(error), LONGEST_ERROR)})") from error
 
 
 def _is_required(field: dataclasses.Field[Any]) -> bool:
