@@ -10,7 +10,7 @@ import typer
 
 from swarm.cli.output import print_json
 from swarm.cli.values import good_place
-from swarm.config.limits import LARGEST_SEED, MOST_MOVES
+from swarm.config.limits import LARGEST_SEED, MOST_JOBS, MOST_MOVES, MOST_TRIALS
 from swarm.errors import UserError
 from swarm.extras import require_extra
 from swarm.parallel import available_cores
@@ -78,7 +78,7 @@ def _curves_of(runs: list[Path]) -> dict[str, Curves]:
 
 def trials_command(
     experiment: Annotated[Path, typer.Argument(help="An experiment file, such as deploy/sim/expert.toml.")],
-    trials: Annotated[int, typer.Option(min=1, help="Trials of each condition.")] = 100,
+    trials: Annotated[int, typer.Option(min=1, max=MOST_TRIALS, help="Trials of each condition.")] = 100,
     moves: Annotated[
         int | None,
         typer.Option(min=1, max=MOST_MOVES, help="Moves of each learner.", show_default="the file's"),
@@ -111,7 +111,7 @@ def trials_command(
         ),
     ] = None,
     jobs: Annotated[
-        int | None, typer.Option(min=1, help="Trials at a time.", show_default="all cores")
+        int | None, typer.Option(min=1, max=MOST_JOBS, help="Trials at a time.", show_default="all cores")
     ] = None,
     json: Json = False,
 ) -> None:

@@ -12,3 +12,7 @@ LARGEST_TRIAL = 2**32 - 1
 """What the run's state can say (uint32)."""
 SLOWEST, FASTEST = 0.01, 1000.0
 """Times as fast as life: beyond it one machine keeps pace with no robot (`make demo` does 200)."""
+MOST_JOBS = 10_000
+"""Processes at a time: more than a cluster's scheduler hands out well."""
+MOST_TRIALS = 1_000_000
+"""Of the abstract engine: some days of a machine's time."""
