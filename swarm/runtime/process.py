@@ -36,6 +36,14 @@ class OneLineParser(argparse.ArgumentParser):
         super().__init__(**settings)
         self.add_argument("--version", action=_ShowVersion, nargs=0, help="print the version and leave")
 
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse does, which would take `--moves=--` for an option without a value, and its default."""
+        words = sys.argv[1:] if args is None else list(args)
+        for word in words:
+            if word.startswith("--") and word.endswith("=--"):
+                self.error(f"{word} has no value")
+        return super().parse_known_args(words, namespace)
+
     def error(self, message: str) -> NoReturn:
         raise UserError(f"{message} (see `{self.prog} --help`)")
 
