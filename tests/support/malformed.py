@@ -168,7 +168,7 @@ COMMANDS: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
         ("--seed", "--jobs", "--out=-rf", "--scheduler=cron"),
     ),
     ("swarm", ("doctor", EXPERIMENT), ("--out=-rf",)),
-    ("swarm", ("analyze", "no-such-run"), ("--out=-rf")),
+    ("swarm", ("analyze", "no-such-run"), ("--out=-rf",)),
     ("swarm", ("check", "no-such-log.mcap"), ()),
     ("swarm", ("recover", "no-such-log.mcap"), ("--out=-rf",)),
     ("swarm", ("durations", "no-such-run"), ("--out=-rf",)),
