@@ -56,6 +56,13 @@ class Task:
     def is_at_home(self, pose: Pose | None) -> bool:
         return pose is not None and self.compartment.state_at(pose.x_m, pose.y_m) is not None
 
+    def cell(self, saved: object) -> int:
+        """A cell that was saved; ValueError if the compartment has none of that number."""
+        cells = self.compartment.grid.states
+        if type(saved) is not int or not 0 <= saved < cells:
+            raise ValueError(f"cell {saved!r} is none of 0 to {cells - 1}")
+        return saved
+
     def drive_to(self, state: int) -> None:
         self.motion.go_to(*self.compartment.centre(state))
 

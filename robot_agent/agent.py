@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from robot_agent.activities import Activity, Finished, Seen, Task, Visiting, Waiting
 from robot_agent.checkpoint import Checkpoint
 from robot_agent.drivers.health import TellsHealth
@@ -9,7 +11,7 @@ from robot_agent.drivers.interfaces import Body
 from robot_agent.drivers.kinematics import WheelSpeeds
 from robot_agent.navigation.pose_estimator import PoseEstimator
 from robot_agent.reports import Reporter
-from swarm.errors import UserError
+from swarm.errors import UserError, in_words
 from swarm.learning.learner import Transition
 
 
@@ -24,6 +26,7 @@ class Agent:
         self._estimator = estimator
         self._reporter = reporter
         self._checkpoint: Checkpoint | None = None
+        self._saves = True
 
     def step(self, t_ns: int) -> None:
         """One tick."""
@@ -86,8 +89,8 @@ class Agent:
         if saved:
             try:
                 self._task.policy.restore(saved["policy"])
-                self.activity = Waiting(self._task, int(saved["state"]))
-            except (KeyError, TypeError, ValueError) as error:
+                self.activity = Waiting(self._task, self._task.cell(saved["state"]))
+            except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
                 raise UserError(f"{checkpoint.path}: does not fit this experiment ({error})") from error
 
     def stop(self) -> None:
@@ -114,4 +117,15 @@ class Agent:
         if self._checkpoint:
             grid = self._task.compartment.grid
             state = grid.start if state == grid.goal else state
-            self._checkpoint.save({"state": state, "policy": self._task.policy.snapshot()})
+            self._keep(self._checkpoint, {"state": state, "policy": self._task.policy.snapshot()})
+
+    def _keep(self, checkpoint: Checkpoint, snapshot: dict[str, Any]) -> None:
+        """A full disk is no reason to stand still: the robot goes on, and says what a restart would lose."""
+        try:
+            checkpoint.save(snapshot)
+        except OSError as error:
+            if self._saves:
+                self._reporter.warning("checkpoint", f"what is learnt is not saved: {in_words(error)}")
+            self._saves = False
+        else:
+            self._saves = True

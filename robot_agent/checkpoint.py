@@ -29,7 +29,7 @@ class Checkpoint:
             content = json.loads(self.path.read_text(encoding="utf-8"))
         except FileNotFoundError:
             return None
-        except (OSError, ValueError) as error:
+        except (OSError, RecursionError, ValueError) as error:
             raise UserError(f"{self.path}: not a checkpoint ({error}); move it away to start anew") from error
         if not isinstance(content, dict) or content.get("version") != VERSION:
             raise UserError(f"{self.path}: not a checkpoint of version {VERSION}; move it away to start anew")

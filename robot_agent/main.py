@@ -12,6 +12,10 @@ from robot_agent.addresses import add_address_argument, addresses
 from robot_agent.agent import Agent
 from robot_agent.assembly import Assembly, Place
 from robot_agent.checkpoint import Checkpoint
+from robot_agent.checks import robot_checks
+from swarm.checkup.finding import require_good
+from swarm.checkup.machine import writable
+from swarm.config.arguments import place
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, guarded, nearest
 from swarm.runtime.process import (
@@ -42,9 +46,9 @@ TOOLS = {
 
 def _called(words: list[str]) -> None:
     """A tool if the first words name one, and else a robot; only what is called is loaded."""
-    for name, place in TOOLS.items():
+    for name, tool_place in TOOLS.items():
         if tuple(words[: len(name)]) == name:
-            module, _, function = place.partition(":")
+            module, _, function = tool_place.partition(":")
             tool = import_module(module)
             arguments = getattr(tool, f"{function}_parser")().parse_args(words[len(name) :])
             getattr(tool, function)(arguments)
@@ -56,6 +60,7 @@ def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and step the robots until the run ends or the process is told to leave."""
     experiment = load_experiment(arguments)
     names = _names(arguments.robot, experiment)
+    _check(arguments, experiment, names)
     leave_on_signals()
     if arguments.supervised:
         leave_with_parent()
@@ -73,6 +78,14 @@ def run(arguments: argparse.Namespace) -> None:
             _stop(agents)
             if arguments.keys:
                 _write_keys(arguments.keys, node.keys_received)
+
+
+def _check(arguments: argparse.Namespace, experiment: Experiment, names: list[str]) -> None:
+    """UserError about what would stop these robots once they are under way."""
+    robots = tuple(experiment.robot_named(name) for name in names)
+    require_good(arguments.experiment, robot_checks(experiment, robots))
+    if arguments.state:
+        require_good(arguments.experiment, [writable("--state", arguments.state)])
 
 
 def _step(agents: list[Agent], t_ns: int) -> None:
@@ -115,13 +128,13 @@ def _parser() -> OneLineParser:
     add_address_argument(parser)
     parser.add_argument(
         "--state",
-        type=Path,
+        type=place,
         metavar="DIR",
         help="keep what was learnt here; go on from it after a restart",
     )
     parser.add_argument(
         "--keys",
-        type=Path,
+        type=place,
         metavar="FILE",
         help="write every key of which a message was received here at the end, one a line",
     )

@@ -2,32 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import time
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from server.conductor.conductor import Conductor
+from server.run_directory import trial_name
 from swarm.config.experiment import Experiment
+
+LINE_EVERY_S = 30.0
+"""Real seconds: often enough that a person, or who reads a file of it, sees that the run goes on."""
 
 
 class RunProgress:
-    """A progress bar on a terminal; silent where there is none."""
+    """A progress bar on a terminal; elsewhere a line every 30 s."""
 
-    def __init__(self, experiment: Experiment, console: Console) -> None:
+    def __init__(
+        self, experiment: Experiment, console: Console, monotonic_s: Callable[[], float] = time.monotonic
+    ) -> None:
         self._experiment = experiment
         self._progress = Progress(
             TextColumn("{task.description}"),
             BarColumn(bar_width=10),
-            TextColumn("{task.completed:.0f}/{task.total:.0f}"),
+            TextColumn("{task.completed:.0f}/{task.total:.0f} moves"),
             TextColumn("{task.fields[learning]}"),
             TimeRemainingColumn(),
             console=console,
             disable=not console.is_terminal,
         )
-        learners = len(experiment.learners)
-        self._task = self._progress.add_task("", total=experiment.run.moves * learners, learning="")
+        self._monotonic_s = monotonic_s
+        self._line_due_s = monotonic_s() + LINE_EVERY_S
+        self._trial = ""
+        self._task = self._progress.add_task("", total=experiment.run.moves, learning="")
 
     def __enter__(self) -> RunProgress:
         self._progress.start()
@@ -37,15 +46,20 @@ class RunProgress:
         self._progress.stop()
 
     def begin(self, trial: int) -> None:
-        """A new trial: the bar starts again."""
-        of = f"/{self._experiment.run.trials}" if self._experiment.run.trials > 1 else ""
-        self._progress.reset(self._task, description=f"trial {trial + 1}{of}", learning="")
+        """A new trial, called as its log is: the bar starts again."""
+        of = f" of {self._experiment.run.trials}" if self._experiment.run.trials > 1 else ""
+        self._trial = f"{trial_name(trial)}{of}"
+        self._progress.reset(self._task, description=self._trial, learning="")
 
-    def show(self, conductor: Conductor, t_s: float) -> None:
-        """Moves of all learners, the hours of their time, and the best path of each condition."""
-        made = sum(conductor.moves[robot.id] for robot in self._experiment.learners)
-        learning = f"{t_s / 3600:.1f} h, path: {', '.join(self._best_paths(conductor))}"
+    def show(self, conductor: Conductor, elapsed_s: float) -> None:
+        """Moves of the slowest learner, the trial's hours, and the best path of each condition."""
+        made = min(conductor.moves[robot.id] for robot in self._experiment.learners)
+        learning = f"{elapsed_s / 3600:.1f} h, path: {', '.join(self._best_paths(conductor)) or 'none yet'}"
         self._progress.update(self._task, completed=made, learning=learning)
+        if self._progress.disable and self._monotonic_s() >= self._line_due_s:
+            self._line_due_s = self._monotonic_s() + LINE_EVERY_S
+            of = self._experiment.run.moves
+            self._progress.console.print(f"{self._trial}: {made}/{of} moves, {learning}", highlight=False)
 
     def _best_paths(self, conductor: Conductor) -> Iterator[str]:
         """The mean over a condition's learners; 0, before the first evaluation, is left out."""
@@ -66,6 +80,11 @@ def print_summary(summary: Mapping[str, Any]) -> None:
     hours = summary["sim_s"] / 3600
     print(f"run        {summary['run']}")
     print(f"moves      {summary['moves']}, {hours:.1f} h of the robots' time in {summary['wall_s']:.0f} s")
-    print(f"speed      {summary['real_time_factor']:.0f} times real time")
+    print(f"speed      {times(summary['real_time_factor'])} times real time")
     print(f"digest     {summary['digest'][:16]}")
     print(f"next       swarm analyze {summary['run']}")
+
+
+def times(factor: float) -> str:
+    """Whole, and with two digits where that says nothing: a laboratory is as fast as life, or slower."""
+    return f"{factor:.0f}" if factor >= 10 else f"{factor:.2g}"

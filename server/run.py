@@ -21,6 +21,7 @@ from server.recording.recorder import Recorder, digest
 from server.run_directory import RunDirectory
 from server.trial import Trial, TrialResult
 from swarm.config.experiment import Experiment
+from swarm.errors import UserError, in_words
 
 
 @dataclass
@@ -40,8 +41,7 @@ class Run:
     def run(self) -> dict[str, Any]:
         """All trials; the run's directory is complete after each of them."""
         began = time.monotonic()
-        copy = self.directory.keep_experiment(self.file)
-        self._write_manifest("running")
+        copy = self._begin()
         state = "interrupted"
         try:
             for trial in self.trials:
@@ -52,7 +52,19 @@ class Run:
             self._write_manifest(state)
             summary = self._summary(time.monotonic() - began)
             self.directory.write_json("run.json", {**summary, **self._circumstances()})
+            self.directory.release()
         return summary
+
+    def _begin(self) -> Path:
+        """What stands in the directory before the first trial; nothing is left if there is no room for it."""
+        try:
+            self.directory.reserve()
+            copy = self.directory.keep_experiment(self.file)
+            self._write_manifest("running")
+        except OSError as error:
+            self.directory.remove()
+            raise UserError(f"{self.directory.path}: {in_words(error)}") from error
+        return copy
 
     def _trial(self, trial: int, file: Path) -> None:
         """Also of a trial that is interrupted it is known how far it came."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from swarm.errors import UserError
+from swarm.errors import NO_ROOM, UserError
 
 
 @dataclass(frozen=True)
@@ -41,17 +41,55 @@ class RunDirectory:
         return Path(shutil.copyfile(file, self.path / "experiment.toml"))
 
     def log(self, trial: int) -> Path:
-        return self.path / f"trial-{trial:03}.mcap"
+        return self.path / f"{trial_name(trial)}.mcap"
 
     def output(self, trial: int) -> Path:
         """Where the processes of a trial print to."""
-        return self.path / "output" / f"trial-{trial:03}"
+        return self.path / "output" / trial_name(trial)
+
+    def reserve(self) -> None:
+        """Take room now for what is written once there is none: how the run ended."""
+        self._reserve.write_bytes(bytes(RESERVED_BYTES))
+
+    def release(self) -> None:
+        """Give the room back."""
+        self._reserve.unlink(missing_ok=True)
+
+    def remove(self) -> None:
+        """Leave nothing of a run that never began."""
+        shutil.rmtree(self.path, ignore_errors=True)
 
     def write_json(self, name: str, content: Mapping[str, Any]) -> None:
-        """Replace one of the directory's own JSON files in one step."""
+        """Replace one of the directory's own JSON files in one step; on a full disk in the reserved room."""
+        try:
+            self._replace(name, content)
+        except OSError as error:
+            if error.errno not in NO_ROOM:
+                raise
+            self.release()
+            self._replace(name, content)
+
+    def _replace(self, name: str, content: Mapping[str, Any]) -> None:
         beside = self.path / f".{name}.part"
-        beside.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
-        beside.replace(self.path / name)
+        try:
+            beside.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+            beside.replace(self.path / name)
+        except OSError:
+            beside.unlink(missing_ok=True)
+            raise
+
+    @property
+    def _reserve(self) -> Path:
+        return self.path / ".reserve"
+
+
+RESERVED_BYTES = 1 << 20
+"""A manifest takes 150 bytes for each robot and trial: thousands have room."""
+
+
+def trial_name(trial: int) -> str:
+    """A trial as its log is called: 0 is `trial-000`."""
+    return f"trial-{trial:03}"
 
 
 def _free(parent: Path, name: str) -> Path:

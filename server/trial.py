@@ -11,6 +11,7 @@ from server.processes.environment import TrialEnvironment
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
 from server.recording.recorder import Recorder
+from swarm.checkup.machine import require_room
 from swarm.logs.ending import COMPLETE
 from swarm.messages import swarm_pb2 as pb
 
@@ -33,6 +34,7 @@ class TrialResult:
     oversized: dict[str, int]
     """Keys with messages that were too large to be logged; `swarm check` counts them as missing."""
     disk_error: str
+    restarted_too_often: dict[str, int]
     slowest_keys: dict[str, float]
 
 
@@ -89,6 +91,7 @@ class Trial:
             unknown_keys=self._recorder.unknown_keys,
             oversized=self._recorder.oversized,
             disk_error=self._recorder.disk_error,
+            restarted_too_often=self._recorder.restarted_too_often,
             slowest_keys=self._health.lowest_share,
         )
 
@@ -107,7 +110,8 @@ class Trial:
         if self._batches % self._environment.batches_between_flushes == 0:
             self._look_for_standing(batch.t_ns)
             self._recorder.flush()
-            self._show(self._conductor, self._t_ns / 1e9)
+            require_room(self._recorder.path.parent)
+            self._show(self._conductor, (self._t_ns - self._began_ns) / 1e9)
 
     def _look_for_standing(self, t_ns: int) -> None:
         """People can help a robot that stands."""

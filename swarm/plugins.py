@@ -1,4 +1,4 @@
-"""Which drivers and tracking systems there are: those that ship, and those of other installed packages.
+"""Which drivers, tracking systems and checks there are: those that ship, and those of other packages.
 
 A package of somebody's own joins by an entry point in a group. What ships is named here, so that an
 updated checkout finds it without being installed anew; a name that ships cannot be taken. Nothing is
@@ -13,8 +13,14 @@ DRIVERS = "swarm.drivers"
 """Functions or classes that take `robot_agent.drivers.interfaces.DriverParts` and return a `Driver`."""
 TRACKERS = "swarm.trackers"
 """Objects of `tracker_bridge.backends.interface.TrackingSystem`."""
+CHECKS = "swarm.checks"
+"""Functions that take an `Experiment` and give findings, before anything starts."""
 
 SHIPPED = {
+    CHECKS: {
+        "robot_agent": "robot_agent.checks:checks",
+        "tracker_bridge": "tracker_bridge.checks:checks",
+    },
     DRIVERS: {
         "sim": "robot_agent.drivers.sim.robot:SimulatedDriver",
         "serial": "robot_agent.drivers.epuck_driver:serial",

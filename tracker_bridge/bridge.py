@@ -12,6 +12,9 @@ from tracker_bridge.capture_times import CaptureTimes
 from tracker_bridge.plausibility import Plausibility
 
 LOST_AFTER_NS = 2 * NS_PER_S
+CARRIED_NS = 2 * NS_PER_S
+"""How long a jump is no surprise after the simulated hand moved a robot: until five poses, a half second and
+what was lost of them, agree that it is there."""
 
 
 class Bridge:
@@ -33,9 +36,13 @@ class Bridge:
         self._refused: dict[str, str] = {}
         self._capture_times = CaptureTimes(self._report, lateness_s, speed)
         self._told_of: set[str] = set()
+        self._carries = node.subscribe(topics.CARRY)
+        self._carried_ns: dict[str, int] = {}
 
     def step(self, t_ns: int) -> None:
         """One tick: pass on what the tracking system measured since the last."""
+        for carry in self._carries.take():
+            self._carried_ns[carry.robot] = carry.header.t_ns
         for tracked in self._backend.poses(t_ns):
             if tracked.robot in self._seen_ns:
                 self._pass_on(tracked, t_ns)
@@ -56,7 +63,8 @@ class Bridge:
         else:
             tracked, reason = dated, self._plausibility.reason_against(dated)
         kind = reason.split(" ")[0] if reason else ""
-        if reason and self._refused.get(tracked.robot) != kind:
+        is_news = reason and self._refused.get(tracked.robot) != kind
+        if is_news and not (kind == "jump" and self._was_carried(tracked)):
             self._report("refused", f"{tracked.robot}: {reason}")
         self._refused[tracked.robot] = kind
         if reason:
@@ -69,6 +77,11 @@ class Bridge:
         for reason in [reason for reason in backend.arrivals.refused if reason not in self._told_of]:
             self._told_of.add(reason)
             self._report("datagram", f"refused: {reason}")
+
+    def _was_carried(self, tracked: TrackedPose) -> bool:
+        """Whether a visit has just begun or ended: in a simulation a robot is elsewhere at once."""
+        carried_ns = self._carried_ns.get(tracked.robot)
+        return carried_ns is not None and abs(tracked.captured_t_ns - carried_ns) <= CARRIED_NS
 
     def _report(self, name: str, text: str) -> None:
         self._node.publish(topics.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))

@@ -6,6 +6,7 @@ import argparse
 import sys
 from importlib import import_module
 
+from swarm.checkup.finding import require_good
 from swarm.errors import guarded
 from swarm.runtime.process import (
     OneLineParser,
@@ -18,6 +19,7 @@ from swarm.signals import leave_on_signals
 from tracker_bridge.backends.interface import Setup
 from tracker_bridge.backends.registry import system_named
 from tracker_bridge.bridge import Bridge
+from tracker_bridge.checks import checks
 from tracker_bridge.commands import VERBS
 from tracker_bridge.plausibility import Plausibility, PlausibilitySettings
 
@@ -43,6 +45,7 @@ def call(words: list[str]) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and pass poses on until the run ends or the process is told to leave."""
     experiment = load_experiment(arguments)
+    require_good(arguments.experiment, checks(experiment))
     system = system_named(experiment.tracker.backend)
     leave_on_signals()
     if arguments.supervised:

@@ -11,6 +11,7 @@ from robot_agent.vision.camera_model import CameraModel, load_camera_model
 from robot_agent.vision.colour_calibration import learn_colour_table
 from robot_agent.vision.colour_table import SKIRT
 from robot_agent.vision.frames import PIXEL_FORMATS, Frame
+from swarm.config.arguments import place, seed
 from swarm.errors import UserError
 from swarm.runtime.process import OneLineParser
 
@@ -73,6 +74,6 @@ def calibrate_parser() -> OneLineParser:
     source.add_argument("--frames", type=Path, metavar="DIR", help="raw frames: *.rgb565 or *.yuyv")
     source.add_argument("--simulated", action="store_true", help="frames of the simulated camera")
     parser.add_argument("--light", default="realistic", help="of the simulated camera (%(default)s)")
-    parser.add_argument("--seed", type=int, default=1, help="of the simulated camera (%(default)s)")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE.npz", help="a new colour table")
+    parser.add_argument("--seed", type=seed, default=1, help="of the simulated camera (%(default)s)")
+    parser.add_argument("--out", type=place, required=True, metavar="FILE.npz", help="a new colour table")
     return parser

@@ -15,8 +15,9 @@ from swarm.clock import NS_PER_S, unix_clock
 from swarm.errors import RunFailedError, UserError
 from swarm.messages import topics
 from swarm.messages.header import Header
-from swarm.runtime.process import OneLineParser, leave_on_signals
+from swarm.runtime.process import OneLineParser
 from swarm.runtime.zenoh_session import Session, SessionSettings
+from swarm.signals import leave_on_signals
 
 TICK_S = 0.1
 POSE_TICKS = 50

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 
 from robot_agent.offline.observation_session import (
     KINDS,
@@ -13,6 +12,7 @@ from robot_agent.offline.observation_session import (
     observed_demonstrations,
     offline_experiment,
 )
+from swarm.config.arguments import place, seed, whole_number
 from swarm.config.experiment import CopyProfile
 from swarm.errors import UserError
 from swarm.geometry import Move
@@ -22,8 +22,6 @@ from swarm.surrogate.copies import CopyPair, write_copies
 
 def collect(arguments: argparse.Namespace) -> None:
     """Show and copy demonstrations, and store what was shown and what was copied."""
-    if arguments.demonstrations < 1:
-        raise UserError(f"--demonstrations {arguments.demonstrations}: give at least 1")
     if arguments.out.exists():
         raise UserError(f"{arguments.out} is there already: choose another name or remove it")
     pairs = list(_pairs(arguments))
@@ -64,12 +62,12 @@ def collect_parser() -> OneLineParser:
         description="Let simulated robots show moves to each other, render what the observer's camera sees, "
         "and store what it copies. Takes about half a second a demonstration.",
     )
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE.csv", help="a new file")
+    parser.add_argument("--out", type=place, required=True, metavar="FILE.csv", help="a new file")
     parser.add_argument(
-        "--demonstrations", type=int, default=300, metavar="N", help="of each kind (%(default)s)"
+        "--demonstrations", type=whole_number(1), default=300, metavar="N", help="of each kind (%(default)s)"
     )
     profiles = [profile.value for profile in CopyProfile]
     parser.add_argument("--profile", choices=profiles, default="best", help="how it copies (%(default)s)")
     parser.add_argument("--light", default="realistic", help="realistic, hard, dark or clean (%(default)s)")
-    parser.add_argument("--seed", type=int, default=1, help="(%(default)s)")
+    parser.add_argument("--seed", type=seed, default=1, help="(%(default)s)")
     return parser

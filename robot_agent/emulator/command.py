@@ -14,7 +14,8 @@ from robot_agent.emulator.emulation import LINKS, MODELS, Emulation, RobotToEmul
 from robot_agent.emulator.faults import Faults
 from swarm.clock import unix_clock
 from swarm.geometry import Compartment, Grid, Pose
-from swarm.runtime.process import OneLineParser, leave_on_signals
+from swarm.runtime.process import OneLineParser
+from swarm.signals import leave_on_signals
 
 PLACE = Compartment(0.0, 0.0, Grid(10, 10), 0.12)
 """The robot stands in the middle of a compartment of the paper's size."""

@@ -17,13 +17,8 @@ from swarm.learning.random import spawned_generator
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.runtime.node import Node
-from swarm.runtime.process import (
-    OneLineParser,
-    add_common_arguments,
-    joined,
-    leave_on_signals,
-    load_experiment,
-)
+from swarm.runtime.process import OneLineParser, add_common_arguments, joined, load_experiment
+from swarm.signals import leave_on_signals
 
 
 def emulate_robots(arguments: argparse.Namespace) -> None:

@@ -8,6 +8,7 @@ from robot_agent.reports import Reporter
 from swarm.geometry import Grid
 from swarm.learning.expert import expert_move
 from swarm.learning.learner import MoveRecord, Transition
+from swarm.learning.snapshot import count
 
 
 class ExpertSnapshot(TypedDict):
@@ -43,4 +44,5 @@ class ExpertPolicy:
         return {"moves": self.moves, "tracks": self.tracks}
 
     def restore(self, saved: ExpertSnapshot) -> None:
-        self.moves, self.tracks = saved["moves"], saved["tracks"]
+        self.moves = count(saved["moves"])
+        self.tracks = count(saved["tracks"], self.moves)

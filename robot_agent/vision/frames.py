@@ -25,6 +25,8 @@ class Frame:
     def __post_init__(self) -> None:
         if self.pixel_format not in PIXEL_FORMATS:
             raise ValueError(f"pixel format {self.pixel_format!r}: use one of {', '.join(PIXEL_FORMATS)}")
+        if self.width < 2 or self.height < 1 or self.width % 2:
+            raise ValueError(f"a {self.width} x {self.height} frame: the width must be even, and neither 0")
         expected = self.width * self.height * BYTES_PER_PIXEL
         if len(self.data) != expected:
             raise ValueError(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from server.hubs.hub import Batch
 from server.reporter import Reporter
 from swarm.clock import NS_PER_S
+from swarm.messages import swarm_pb2 as pb
 from swarm.messages.topics import topic_of
 
 WINDOW_NS = 10 * NS_PER_S
@@ -46,5 +47,5 @@ class Health:
         self.lowest_share[key] = min(share, self.lowest_share.get(key, share))
         if (share < LOW_SHARE) != (key in self._low):
             self._low ^= {key}
-            name = "slow" if share < LOW_SHARE else "recovered"
-            self._reporter.event(name, f"{key}: {share:.0%} of the declared rate")
+            name, level = ("slow", pb.Event.WARNING) if share < LOW_SHARE else ("recovered", pb.Event.INFO)
+            self._reporter.event(name, f"{key}: {share:.0%} of the declared rate", level)

@@ -29,6 +29,11 @@ LAID_DOWN_EVERY_S = 0.2
 MAX_MESSAGE_BYTES = 16 * MAX_PAYLOAD_BYTES
 """No larger message is stored. Nobody decodes more than MAX_PAYLOAD_BYTES; a little more can be looked at."""
 
+MOST_EPOCHS = 100
+"""Of one key: a robot that restarts more often in a trial is ill, or somebody makes epochs up."""
+MOST_CHANNELS = 60_000
+"""MCAP numbers them with 16 bits; the rest is for views."""
+
 
 class Recorder:
     """One MCAP file of one trial. Payloads are never decoded; schemas are embedded.
@@ -54,10 +59,13 @@ class Recorder:
         """Keys with messages above MAX_MESSAGE_BYTES, and the number of them that were left out."""
         self.unknown_keys: dict[str, int] = {}
         """Keys that the key table does not know, with the number of messages that were left out."""
+        self.restarted_too_often: dict[str, int] = {}
+        """Keys of more senders than can be logged, with the number of messages that were left out."""
         self._writer = LogWriter(self._file)
         self._schemas: dict[str, int] = {}
         self._channels: dict[Sender, int | None] = {}
         self._last: dict[Sender, int] = {}
+        self._epochs: dict[str, int] = {}
         self._views: dict[str, int] = {}
         self._add_metadata(metadata)
         self._file.flush()
@@ -139,17 +147,25 @@ class Recorder:
             self._writer.add_metadata(name, dict(values))
 
     def _registered(self, key: str, epoch: int) -> int | None:
-        """The channel of a key and epoch; None for a key that is not to be logged."""
+        """The channel of a key and epoch; None for a key that is not to be logged, or has too many."""
         found = topic_of(key)
         if found is None or not found[0].logged:
             return None
+        epochs = self._epochs.get(key, 0)
+        if epochs == MOST_EPOCHS or len(self._writer.channels) >= MOST_CHANNELS:
+            return None
+        self._epochs[key] = epochs + 1
         topic, robot = found
         about = {"epoch": str(epoch), "robot": robot, "delivery": topic.delivery.value}
         return self._channel(key, topic.message, about)
 
     def _leave_out(self, key: str) -> None:
-        if topic_of(key) is None:
+        """Count a message, unless its topic is one that is never logged."""
+        found = topic_of(key)
+        if found is None:
             self.unknown_keys[key] = self.unknown_keys.get(key, 0) + 1
+        elif found[0].logged:
+            self.restarted_too_often[key] = self.restarted_too_often.get(key, 0) + 1
 
     def _channel(self, key: str, message: type[Message], about: dict[str, str]) -> int:
         number = len(self._writer.channels) + 1

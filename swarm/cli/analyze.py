@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from swarm.cli.output import print_json
+from swarm.cli.values import good_place
 from swarm.extras import require_extra
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ def analyze_command(
         typer.Option(
             help="Where results go: new, or holding results of the very same logs.",
             show_default="RUN/analysis",
+            callback=good_place,
         ),
     ] = None,
     samples: Annotated[

@@ -10,6 +10,7 @@ import typer
 from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
+from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
 from swarm.cli.recover import recover_command
 from swarm.cli.reproduce import reproduce_command
@@ -43,6 +44,7 @@ def _root(
     """What belongs to no verb."""
 
 
+app.command("doctor")(doctor_command)
 app.command("simulate")(simulate_command)
 app.command("reproduce")(reproduce_command)
 app.command("claims")(claims_command)
@@ -53,13 +55,19 @@ app.command("check")(check_command)
 app.command("recover")(recover_command)
 
 
+def _help_of(error: typer.TyperException) -> str:
+    """The command whose help tells more: the verb's, if the error is about one."""
+    context = getattr(error, "ctx", None)
+    return f"{context.command_path if context else 'swarm'} --help"
+
+
 def run() -> None:
     """Parse the command line and run the verb; a bad call becomes a UserError."""
     try:
         code = app(standalone_mode=False, prog_name="swarm")
     except typer.TyperException as error:
-        what = " ".join(str(error).split()) or "a verb is missing"
-        raise UserError(f"{what} (see `swarm --help`)") from error
+        what = " ".join(error.format_message().split()).rstrip(".") or "a verb is missing"
+        raise UserError(f"{what} (see `{_help_of(error)}`)") from error
     except typer.Abort as error:
         raise KeyboardInterrupt from error
     sys.exit(code or 0)

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from swarm.cli.output import print_json
+from swarm.cli.values import good_place
 from swarm.extras import require_extra
 
 Json = Annotated[bool, typer.Option("--json", help="Print the results as one JSON object.")]
@@ -17,7 +18,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print the results as one JSO
 
 def durations_command(
     run: Annotated[list[Path], typer.Argument(help="Run directories or .mcap files.")],
-    out: Annotated[Path, typer.Option(help="A new CSV file.")] = Path("durations.csv"),
+    out: Annotated[Path, typer.Option(help="A new CSV file.", callback=good_place)] = Path("durations.csv"),
     json: Json = False,
 ) -> None:
     """Measure in logs how long moves and drives back take, for `swarm trials --durations`."""

@@ -8,13 +8,16 @@ from typing import Annotated
 import typer
 
 from swarm.cli.output import print_json
+from swarm.cli.values import good_place
 from swarm.extras import require_extra
 from swarm.files import printable
 
 
 def recover_command(
     log: Annotated[Path, typer.Argument(help="A .mcap file.")],
-    out: Annotated[Path | None, typer.Option(help="The new file (LOG with .recovered.mcap).")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="The new file (LOG with .recovered.mcap).", callback=good_place)
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")] = False,
 ) -> None:
     """Copy all that can be read of a log into a new file with an index; the old one stays as it is.

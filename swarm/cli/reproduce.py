@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from swarm.cli.output import print_json
+from swarm.cli.values import good_place
 from swarm.errors import UserError
 from swarm.extras import require_extra
 from swarm.parallel import available_cores
@@ -26,6 +27,7 @@ Out = Annotated[
     typer.Option(
         help="Where results go; a directory of the same settings is resumed.",
         show_default="runs/reproduce/seed-SEED",
+        callback=good_place,
     ),
 ]
 Jobs = Annotated[int | None, typer.Option(help="Runs at a time.", show_default="the number of cores")]

@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+from swarm.cli.values import checked, good_place
+from swarm.config import arguments
 from swarm.extras import require_extra
 from swarm.interpreter import child_environment, module_command
 from swarm.signals import leave_at_once
@@ -19,17 +21,42 @@ def simulate_command(
         Path, typer.Argument(help="The experiment file, for instance deploy/sim/demo.toml.")
     ],
     out: Annotated[
-        Path | None, typer.Option(help="A new directory for the run.", show_default="runs/NAME-001 and so on")
+        Path | None,
+        typer.Option(
+            help="A new directory for the run.",
+            show_default="runs/NAME-001 and so on",
+            callback=good_place,
+        ),
     ] = None,
-    seed: Annotated[int | None, typer.Option(help="In place of the experiment's seed.")] = None,
+    seed: Annotated[
+        str | None,
+        typer.Option(
+            metavar="N", help="In place of the experiment's seed.", callback=checked(arguments.seed)
+        ),
+    ] = None,
     moves: Annotated[
-        int | None, typer.Option(help="In place of the experiment's moves of a learner.")
+        str | None,
+        typer.Option(
+            metavar="N",
+            help="In place of the experiment's moves of a learner.",
+            callback=checked(arguments.moves),
+        ),
     ] = None,
     speed: Annotated[
-        str, typer.Option(help="max: lockstep, repeatable; X: so many times as fast as life.")
-    ] = "max",
+        str,
+        typer.Option(
+            metavar="max|X",
+            help="max: lockstep, repeatable; X: so many times as fast as life.",
+            callback=checked(arguments.pace_or_max),
+        ),
+    ] = arguments.MAX,
     processes: Annotated[
-        int | None, typer.Option(help="Processes for the robots; 0 gives each robot its own.")
+        str | None,
+        typer.Option(
+            metavar="N",
+            help="Processes for the robots; 0 gives each robot its own.",
+            callback=checked(arguments.processes),
+        ),
     ] = None,
     emulate: Annotated[
         bool,

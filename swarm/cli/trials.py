@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from swarm.cli.output import print_json
+from swarm.cli.values import good_place
+from swarm.config.limits import LARGEST_SEED, MOST_JOBS, MOST_MOVES, MOST_TRIALS
 from swarm.errors import UserError
 from swarm.extras import require_extra
 from swarm.parallel import available_cores
@@ -38,6 +40,8 @@ def many_trials(
 ) -> dict[str, Any]:
     """Run the trials, and write picture and tables into a new directory."""
     require_extra("lab", "scipy", "polars", "matplotlib")
+    from swarm.checkup.checkup import experiment_findings
+    from swarm.checkup.finding import require_good
     from swarm.config.experiment import Experiment
     from swarm.surrogate.copies import STORED_COPIES
     from swarm.surrogate.durations import MEASURED_DURATIONS
@@ -45,6 +49,7 @@ def many_trials(
     from swarm.surrogate.trials import PAPER_TRIALS, run_trials, summary, write_tables
 
     experiment = Experiment.load(file).changed(seed=seed, moves=moves)
+    require_good(file, experiment_findings(experiment))
     of_full = _curves_of(full) if full else None
     directory = _new_directory(out)
     many = run_trials(experiment, copies or STORED_COPIES, durations or MEASURED_DURATIONS, trials, jobs)
@@ -73,12 +78,14 @@ def _curves_of(runs: list[Path]) -> dict[str, Curves]:
 
 def trials_command(
     experiment: Annotated[Path, typer.Argument(help="An experiment file, such as deploy/sim/expert.toml.")],
-    trials: Annotated[int, typer.Option(min=1, help="Trials of each condition.")] = 100,
+    trials: Annotated[int, typer.Option(min=1, max=MOST_TRIALS, help="Trials of each condition.")] = 100,
     moves: Annotated[
-        int | None, typer.Option(help="Moves of each learner.", show_default="the file's")
+        int | None,
+        typer.Option(min=1, max=MOST_MOVES, help="Moves of each learner.", show_default="the file's"),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="The root of all randomness.", show_default="the file's")
+        int | None,
+        typer.Option(min=0, max=LARGEST_SEED, help="The root of all randomness.", show_default="the file's"),
     ] = None,
     copies: Annotated[
         Path | None,
@@ -98,10 +105,13 @@ def trials_command(
         ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Where results go: a new directory.", show_default="runs/trials/NAME")
+        Path | None,
+        typer.Option(
+            help="Where results go: a new directory.", show_default="runs/trials/NAME", callback=good_place
+        ),
     ] = None,
     jobs: Annotated[
-        int | None, typer.Option(min=1, help="Trials at a time.", show_default="all cores")
+        int | None, typer.Option(min=1, max=MOST_JOBS, help="Trials at a time.", show_default="all cores")
     ] = None,
     json: Json = False,
 ) -> None:

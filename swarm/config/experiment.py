@@ -14,6 +14,7 @@ from typing import Annotated
 
 import numpy as np
 
+from swarm.config.limits import LARGEST_SEED, MOST_MOVES, MOST_PROCESSES
 from swarm.config.toml_files import Between, ConfigFile
 from swarm.errors import nearest
 from swarm.geometry import Compartment, Grid, Pose
@@ -47,11 +48,11 @@ class RunSettings:
 
     name: str
     """The run's name, an id: it also names the run's directory."""
-    moves: Annotated[int, Between(1, 10_000_000)] = 15_000
+    moves: Annotated[int, Between(1, MOST_MOVES)] = 15_000
     """Moves of each learner in a trial; the paper's 15,000 take about 10 hours on robots."""
     trials: Annotated[int, Between(1, 10_000)] = 1
     """Repetitions, each with new robots and random numbers of its own."""
-    seed: Annotated[int, Between(0, 2**63 - 1)] = 1
+    seed: Annotated[int, Between(0, LARGEST_SEED)] = 1
     """The one root of all randomness; the same seed gives the same log."""
 
 
@@ -200,7 +201,7 @@ class SimulationSettings:
     """Ticks that the processes of a lockstep make before they exchange messages; fewer if a camera takes more
     frames, or if poses would come too late to drive by. A pose comes two exchanges late, 0.4 s; with 1 it is
     0.2 s, and a run takes half as long again."""
-    processes: Annotated[int, Between(0, 1000)] = 0
+    processes: Annotated[int, Between(0, MOST_PROCESSES)] = 0
     """Processes that host the robots; 0 gives each robot its own, as on hardware."""
 
 
@@ -371,7 +372,22 @@ def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, f
     if robot.watches and robot.role is not Role.LEARNER:
         raise file.error(where, f"{robot.id!r} is no learner: it cannot watch")
     if robot.watches and robot.watches not in known:
-        raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {nearest(robot.watches, known)}")
+        whom = nearest(robot.watches, known) if known else "there is no other robot"
+        raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {whom}")
+    if robot.watches:
+        _check_observers_place(experiment, robot, file)
+
+
+def _check_observers_place(experiment: Experiment, robot: RobotSettings, file: ConfigFile) -> None:
+    demonstrator, arena = experiment.robot_named(robot.watches), experiment.arena
+    place = experiment.observers_place(demonstrator)
+    if not (0 <= place.x_m <= arena.width_m and 0 <= place.y_m <= arena.height_m):
+        where = ("robot", experiment.robot.index(demonstrator), "south_west_m")
+        raise file.error(
+            where,
+            f"{robot.id!r} would watch {robot.watches!r} from ({place.x_m:.2f}, {place.y_m:.2f}) m, which is "
+            f"off the floor: leave {BEYOND_CORNER_M:g} m east and south of that compartment",
+        )
 
 
 def _check_place(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:

@@ -16,7 +16,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, TypeVar
 
-from swarm.errors import UserError, nearest
+from swarm.errors import UserError, nearest, one_line
 
 S = TypeVar("S")
 
@@ -37,12 +37,18 @@ class ConfigFile:
         self._lines = _read(path).splitlines()
         try:
             self.values: dict[str, Any] = tomllib.loads("\n".join(self._lines))
-        except tomllib.TOMLDecodeError as error:
-            raise UserError(f"{path}: not valid TOML: {error}") from error
+        except ValueError as error:
+            raise UserError(f"{path}: not valid TOML: {one_line(str(error), LONGEST_ERROR)}") from error
+        except RecursionError as error:
+            raise UserError(f"{path}: not valid TOML: brackets in brackets, too deep to read") from error
 
     def error(self, where: tuple[str | int, ...], text: str) -> UserError:
         """An error about the key at a place such as ("robot", 1, "id")."""
-        return UserError(f"{self.path}:{self._line_of(where)}: {text}")
+        return UserError(f"{self.place(where)}: {one_line(text, LONGEST_ERROR)}")
+
+    def place(self, where: tuple[str | int, ...]) -> str:
+        """File and line of the key at a place."""
+        return f"{self.path}:{self._line_of(where)}"
 
     def settings(self, kind: type[S]) -> S:
         """The whole file as one settings dataclass."""
@@ -69,16 +75,16 @@ class ConfigFile:
             hint = next(choice for choice in typing.get_args(hint) if choice is not type(None))
         if dataclasses.is_dataclass(hint) and isinstance(hint, type):
             if not isinstance(value, dict):
-                raise self.error(where, f"{where[-1]!r} is a table, not {value!r}")
+                raise self.error(where, f"{_name(where)!r} is a table, not {_shown(value)}")
             return self._table(hint, value, where)
         if typing.get_origin(hint) is tuple:
             return self._sequence(hint, bounds, value, where)
         return self._scalar(hint, bounds, value, where)
 
     def _sequence(self, hint: Any, bounds: Between | None, value: Any, where: tuple[str | int, ...]) -> Any:
-        if not isinstance(value, list):
-            raise self.error(where, f"{where[-1]!r} is a list, not {value!r}")
         kinds = typing.get_args(hint)
+        if not isinstance(value, list):
+            raise self.error(where, _no_list(where, kinds[0], value))
         if kinds[-1] is Ellipsis:
             kinds = (kinds[0],) * len(value)
         if len(kinds) != len(value):
@@ -90,16 +96,16 @@ class ConfigFile:
         )
 
     def _scalar(self, kind: type, bounds: Between | None, value: Any, where: tuple[str | int, ...]) -> Any:
-        name = next(str(part) for part in reversed(where) if isinstance(part, str))
+        name = _name(where)
         if issubclass(kind, Enum):
             known = {member.value: member for member in kind}
-            if value not in known:
-                raise self.error(where, f"{name!r} is {value!r}; {nearest(str(value), known)}")
+            if not isinstance(value, str) or value not in known:
+                raise self.error(where, f"{name!r} is {_shown(value)}; {nearest(str(value), known)}")
             return known[value]
-        if kind is float and type(value) is int:
+        if kind is float and type(value) is int and abs(value) <= LARGEST_WHOLE:
             value = float(value)
         if type(value) is not kind:
-            raise self.error(where, f"{name!r} is a {_WORDS[kind]}, not {value!r}")
+            raise self.error(where, f"{name!r} is a {_WORDS[kind]}, not {_shown(value)}")
         if isinstance(value, int | float) and not isinstance(value, bool):
             self._check_number(name, value, bounds, where)
         return value
@@ -107,11 +113,13 @@ class ConfigFile:
     def _check_number(
         self, name: str, value: float, bounds: Between | None, where: tuple[str | int, ...]
     ) -> None:
-        if not math.isfinite(value):
+        if isinstance(value, float) and not math.isfinite(value):
             raise self.error(where, f"{name!r} is {value}; a finite number is wanted")
         if bounds and not bounds.low <= value <= bounds.high:
             at_most = "" if math.isinf(bounds.high) else f" and at most {bounds.high:g}"
-            raise self.error(where, f"{name!r} is {value}; it has to be at least {bounds.low:g}{at_most}")
+            raise self.error(
+                where, f"{name!r} is {_shown(value)}; it has to be at least {bounds.low:g}{at_most}"
+            )
 
     def _line_of(self, where: tuple[str | int, ...]) -> int:
         """The line of a key, or of the table that it belongs to, counted from 1."""
@@ -136,13 +144,43 @@ class ConfigFile:
 _WORDS = {str: "text", int: "whole number", float: "number", bool: "true or false"}
 
 
+LARGEST_WHOLE = 2**53
+"""Up to here every whole number is a number (IEEE 754), and no setting is larger."""
+LONGEST_ERROR = 400
+"""Characters that an error says beside its place."""
+LONGEST_SHOWN = 60
+"""Characters of a value in an error, which is to stay one line that can be read."""
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}..."
+
+
+def _name(where: tuple[str | int, ...]) -> str:
+    """The name of the key, also of an entry of a list."""
+    return next(str(part) for part in reversed(where) if isinstance(part, str))
+
+
+def _no_list(where: tuple[str | int, ...], kind: Any, value: Any) -> str:
+    """What a list of this kind looks like, for somebody who wrote no list."""
+    name = _name(where)
+    if dataclasses.is_dataclass(kind):
+        return f"there may be several: write [[{name}]], with two brackets, above each"
+    if isinstance(where[-1], int):
+        return f"{name!r} is a list of lists, such as [[{_shown(value)}]]; {_shown(value)} is no list"
+    return f"{name!r} is a list, not {_shown(value)}"
+
+
 def _read(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
         raise UserError(f"{path}: there is no such file") from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise UserError(f"{path}: cannot be read as text: {error}") from error
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read as text ({error.strerror})") from error
+    except ValueError as error:
+        raise UserError(f"{path}: cannot be read as text ({one_line(str(error), LONGEST_ERROR)})") from error
 
 
 def _is_required(field: dataclasses.Field[Any]) -> bool:

@@ -11,9 +11,9 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from swarm.compilation import compiled
 from swarm.geometry import MOVES
 from swarm.gridworld.splitmix import FIRST, GOLDEN, SECOND
 from swarm.gridworld.state import (
@@ -50,19 +50,17 @@ _U = np.uint64
 _GOLDEN, _FIRST, _SECOND, _MOVES, _ONE = _U(GOLDEN), _U(FIRST), _U(SECOND), _U(MOVES), _U(1)
 
 # Without numba's reference counts, which cost far more than the learning: nothing here allocates.
-_OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
+_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 
 
 def _called(function: Function) -> Function:
     """Compile as a function of its own."""
-    compiled: Function = njit(**_OPTIONS)(function)
-    return compiled
+    return compiled(function, **_OPTIONS)
 
 
 def _inlined(function: Function) -> Function:
     """Compile into whatever calls it."""
-    compiled: Function = njit(forceinline=True, **_OPTIONS)(function)
-    return compiled
+    return compiled(function, forceinline=True, **_OPTIONS)
 
 
 @_inlined

@@ -14,6 +14,7 @@ from swarm.geometry import MOVES
 from swarm.learning.memory import ImitationMemory, MemorySnapshot, RememberedPath
 from swarm.learning.q_table import QTable
 from swarm.learning.random import Rng, RngState, restore_rng, rng_state
+from swarm.learning.snapshot import count, finite
 
 
 class Outcome(Enum):
@@ -169,6 +170,8 @@ class Controller:
         self.memory.restore(saved["memory"])
         restore_rng(self.rng, saved["rng"])
         replay = saved["replay"]
-        self.replay = replay and Replay(
-            self.memory.numbered(replay["path"]), replay["index"], replay["q_change"]
-        )
+        self.replay = self._restored(replay) if replay else None
+
+    def _restored(self, saved: ReplaySnapshot) -> Replay:
+        remembered = self.memory.numbered(saved["path"])
+        return Replay(remembered, count(saved["index"], len(remembered.path) - 1), finite(saved["q_change"]))

@@ -14,6 +14,7 @@ from swarm.learning.greedy_path import greedy_path_length
 from swarm.learning.memory import ObservedPath
 from swarm.learning.q_table import discount_over
 from swarm.learning.random import Rng, RngState, restore_rng, rng_state
+from swarm.learning.snapshot import count
 
 MOVES_BETWEEN_EVALUATIONS = 10
 """Section 2.1 of the paper: "every 10 time units"."""
@@ -151,7 +152,8 @@ class Learner:
         """Go on from a snapshot; ValueError if it does not fit."""
         self.controller.restore(saved["controller"])
         restore_rng(self._evaluation_rng, saved["evaluation_rng"])
-        self.moves, self.tracks = saved["moves"], saved["tracks"]
+        self.moves = count(saved["moves"])
+        self.tracks = count(saved["tracks"], self.moves)
 
     def _update(self, transition: Transition, reward: float, *, arrived: bool) -> float:
         discount = discount_over(transition.duration_s, self._discount_rate_per_s)

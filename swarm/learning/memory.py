@@ -12,6 +12,7 @@ from typing import Protocol, TypedDict
 from swarm.geometry import Move
 from swarm.learning.q_table import QTable
 from swarm.learning.random import Rng
+from swarm.learning.snapshot import count
 
 
 class Approach(Enum):
@@ -109,17 +110,10 @@ class ImitationMemory:
         return {"observed": self.observed, "paths": [_path_snapshot(each) for each in self.remembered]}
 
     def restore(self, saved: MemorySnapshot) -> None:
-        self.observed = saved["observed"]
-        self.remembered = [
-            RememberedPath(
-                ObservedPath.parse(path["moves"]),
-                path["n_replicated"],
-                path["n_completed"],
-                path["n_q_plus"],
-                path["number"],
-            )
-            for path in saved["paths"]
-        ]
+        """ValueError for what cannot have been a memory of this capacity."""
+        self.observed = count(saved["observed"])
+        self.remembered = [_restored(path, self.observed) for path in saved["paths"]]
+        count(len(self.remembered), self.capacity)
 
 
 class Path(Protocol):
@@ -179,6 +173,18 @@ class AccessedPolicy:
 
     def action(self, index: int, state: int, rng: Rng) -> int:  # noqa: ARG002
         return self.other.greedy(state, rng)
+
+
+def _restored(saved: PathSnapshot, observed: int) -> RememberedPath:
+    """A path with its counters; no replay that was completed or raised Q is more than was replicated."""
+    n_replicated = count(saved["n_replicated"])
+    return RememberedPath(
+        ObservedPath.parse(saved["moves"]),
+        n_replicated,
+        count(saved["n_completed"], n_replicated),
+        count(saved["n_q_plus"], n_replicated),
+        count(saved["number"], observed),
+    )
 
 
 def _path_snapshot(remembered: RememberedPath) -> PathSnapshot:

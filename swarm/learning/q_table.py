@@ -6,6 +6,7 @@ import math
 
 from swarm.geometry import MOVES
 from swarm.learning.random import Rng
+from swarm.learning.snapshot import finite
 
 ALPHA = 0.2
 GAMMA = 0.7
@@ -63,7 +64,9 @@ class QTable:
         """Go on from a snapshot; ValueError if it is of another number of states."""
         if len(values) != len(self.values):
             raise ValueError(f"it has {len(values)} states; the grid has {len(self.values)}")
-        self.values = [[float(value) for value in row] for row in values]
+        if any(len(row) != MOVES for row in values):
+            raise ValueError(f"a state has not {MOVES} actions")
+        self.values = [[finite(value) for value in row] for row in values]
 
 
 def discount_over(duration_s: float, rate_per_s: float = DISCOUNT_RATE_PER_S) -> float:

@@ -9,6 +9,8 @@ from typing import TypeVar
 from google.protobuf.descriptor import Descriptor, FieldDescriptor
 from google.protobuf.message import DecodeError, Message
 
+from swarm.messages import swarm_pb2 as pb
+
 MAX_PAYLOAD_BYTES = 65_536
 MAX_T_NS = 2**62
 
@@ -27,9 +29,15 @@ class BadMessageError(ValueError):
 
 
 def decode(message_type: type[M], payload: bytes) -> M:
-    """Decode and check a payload; BadMessageError names the field that is wrong."""
+    """Decode and check a payload; BadMessageError names the field that is wrong.
+
+    An empty payload is a message whose values are all 0. Only a command can mean that: a robot that stands,
+    and does not know yet where.
+    """
     if len(payload) > MAX_PAYLOAD_BYTES:
         raise BadMessageError(f"{len(payload)} bytes; at most {MAX_PAYLOAD_BYTES} are read")
+    if not payload and message_type is not pb.Command:
+        raise BadMessageError(f"an empty {message_type.__name__} says nothing")
     try:
         message = message_type.FromString(payload)
     except DecodeError as error:
@@ -39,8 +47,14 @@ def decode(message_type: type[M], payload: bytes) -> M:
 
 
 def check(message: Message) -> None:
-    """BadMessageError unless every float is finite and plausible and every time is positive."""
-    singles, lists, parts = _fields(message.DESCRIPTOR)
+    """BadMessageError unless every float is finite and plausible, every time positive, every kind known."""
+    singles, lists, parts, kinds = _fields(message.DESCRIPTOR)
+    for name, known in kinds:
+        if getattr(message, name) not in known:
+            raise BadMessageError(
+                f"{message.DESCRIPTOR.name}.{name} is {getattr(message, name)}: it has to be said, by one of "
+                f"{', '.join(known.values())}"
+            )
     for name, low, high, hint in singles:
         value = getattr(message, name)
         if not low <= value <= high:
@@ -59,20 +73,27 @@ def _not_plausible(message: Message, name: str, value: float, hint: str) -> BadM
 
 
 Limits = tuple[tuple[str, float, float, str], ...]
+Kinds = tuple[tuple[str, dict[int, str]], ...]
 
 
 @cache
-def _fields(descriptor: Descriptor) -> tuple[Limits, Limits, tuple[str, ...]]:
-    """A message type's single numbers, lists of numbers, and lists of messages.
+def _fields(descriptor: Descriptor) -> tuple[Limits, Limits, tuple[str, ...], Kinds]:
+    """A message type's single numbers, lists of numbers, lists of messages, and kinds.
 
-    A number's limits are its name, the lowest and highest that it may be, and a hint.
+    A number's limits are its name, the lowest and highest that it may be, and a hint. A kind's are its name
+    and what it may be: never 0, which is what an enumeration is if nobody said anything.
     """
     parts = tuple(
         field.name
         for field in descriptor.fields
         if field.is_repeated and field.cpp_type == FieldDescriptor.CPPTYPE_MESSAGE
     )
-    return _limits(descriptor, repeated=False), _limits(descriptor, repeated=True), parts
+    kinds = tuple(
+        (field.name, {value.number: value.name for value in field.enum_type.values if value.number})
+        for field in descriptor.fields
+        if field.enum_type is not None
+    )
+    return _limits(descriptor, repeated=False), _limits(descriptor, repeated=True), parts, kinds
 
 
 def _limits(descriptor: Descriptor, *, repeated: bool) -> Limits:

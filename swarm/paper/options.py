@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from swarm.config.limits import LARGEST_SEED, MOST_JOBS
 from swarm.errors import UserError
 from swarm.gridworld.condition import Condition
 from swarm.paper.store import RunStore
@@ -29,8 +30,10 @@ class Settings:
         for name, value in (("runs", self.runs), ("steps", self.steps), ("jobs", self.jobs)):
             if value is not None and value < 1:
                 raise UserError(f"--{name} {value}: give at least 1")
-        if self.seed < 0:
-            raise UserError(f"--seed {self.seed}: give 0 or more")
+        if self.jobs > MOST_JOBS:
+            raise UserError(f"--jobs {self.jobs}: give at most {MOST_JOBS}")
+        if not 0 <= self.seed <= LARGEST_SEED:
+            raise UserError(f"--seed {self.seed}: give 0 to {LARGEST_SEED}")
         check_scheduler(self.scheduler)
 
     @property

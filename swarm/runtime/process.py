@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from swarm.clock import scaled_clock, unix_clock
+from swarm.config import arguments as values
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.runtime.liveliness import Presence, claim
@@ -41,6 +42,14 @@ class OneLineParser(argparse.ArgumentParser):
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
         self.add_argument("--version", action=_ShowVersion, nargs=0, help="print the version and leave")
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse does, which would take `--moves=--` for an option without a value, and its default."""
+        words = sys.argv[1:] if args is None else list(args)
+        for word in words:
+            if word.startswith("--") and word.endswith("=--"):
+                self.error(f"{word} has no value")
+        return super().parse_known_args(words, namespace)
 
     def error(self, message: str) -> NoReturn:
         raise UserError(f"{message} (see `{self.prog} --help`)")
@@ -70,10 +79,10 @@ def add_common_arguments(parser: argparse.ArgumentParser) -> None:
     )
     simulated.add_argument("--lockstep", action="store_true", help="step when the server says so")
     simulated.add_argument("--started-ns", type=int, default=0, help="monotonic time at which the run began")
-    simulated.add_argument("--speed", type=float, default=1.0, help="how many times as fast as life")
-    simulated.add_argument("--trial", type=int, default=0, help="the number of the trial, from 0")
-    simulated.add_argument("--seed", type=int, default=None, help="in place of the experiment's")
-    simulated.add_argument("--moves", type=int, default=None, help="in place of the experiment's")
+    simulated.add_argument("--speed", type=values.pace, default=1.0, help="how many times as fast as life")
+    simulated.add_argument("--trial", type=values.trial, default=0, help="the number of the trial, from 0")
+    simulated.add_argument("--seed", type=values.seed, default=None, help="in place of the experiment's")
+    simulated.add_argument("--moves", type=values.moves, default=None, help="in place of the experiment's")
 
 
 def load_experiment(arguments: argparse.Namespace) -> Experiment:

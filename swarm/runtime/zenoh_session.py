@@ -32,6 +32,9 @@ QUEUE_DEPTH = 65_536
 """Messages; fifty robots send some thousand a second: room for more than half a minute."""
 MOST_AT_ONCE = 4096
 """Messages of an inbox in one poll: some tenths of a second of work on a board, then the others' turn."""
+LARGEST_MESSAGE_BYTES = 16 << 20
+"""What a session takes in: thrice an exchange of 1000 robots in lockstep. Zenoh would put 1 GiB together
+before anybody could refuse it."""
 WAIT_FOR_ROOM_S = 5.0
 """What must not be dropped waits so long for room, or as long as the lease; then Zenoh reconnects."""
 
@@ -232,6 +235,7 @@ def _config(settings: SessionSettings) -> zenoh.Config:
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
         "transport/shared_memory/enabled": False,
+        "transport/link/rx/max_message_size": LARGEST_MESSAGE_BYTES,
         "timestamping/enabled": True,
         "transport/link/tx/lease": round(settings.lease_s * 1000),
         "transport/link/tx/queue/congestion_control/block/wait_before_close": round(patience_s * 1e6),

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import resource
 from pathlib import Path
 
 import pytest
 
-from server.run_directory import RunDirectory
+from server.run_directory import RunDirectory, trial_name
 from swarm.errors import UserError
 
 
@@ -49,3 +50,24 @@ def test_json_is_replaced_whole(tmp_path: Path) -> None:
         directory.write_json("manifest.json", {"state": state})
     assert json.loads((tmp_path / "run" / "manifest.json").read_text()) == {"state": "complete"}
     assert [path.name for path in directory.path.iterdir()] == ["manifest.json"]
+
+
+def test_on_a_full_disk_the_reserved_room_takes_how_the_run_ended(tmp_path: Path) -> None:
+    """A file may not become larger than 100 bytes here: the disk is full for every new one but a small."""
+    directory = RunDirectory.create(tmp_path / "run", "x")
+    directory.reserve()
+    _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100, hard))
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            directory.write_json("run.json", {"text": "x" * 200})
+        directory.write_json("manifest.json", {"state": "interrupted"})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
+    assert [path.name for path in directory.path.iterdir()] == ["manifest.json"]
+
+
+def test_trials_are_called_as_their_logs(tmp_path: Path) -> None:
+    directory = RunDirectory.create(tmp_path / "run", "x")
+    assert (trial_name(0), trial_name(12)) == ("trial-000", "trial-012")
+    assert directory.log(12).stem == directory.output(12).name == trial_name(12)

@@ -52,9 +52,12 @@ def test_a_run_directory_that_exists_is_left_alone(tmp_path: Path, experiment: P
     ("arguments", "said"),
     [
         (("--moves", "0"), "--moves"),
+        (("--moves", "abc"), "--moves"),
         (("--seed", "-1"), "--seed"),
-        (("--speed", "fast"), "'fast' is neither max nor a number"),
+        (("--speed", "fast"), "'fast' is no number from 0.01 to 1000, nor max"),
+        (("--speed", "0"), "--speed"),
         (("--speeed", "1"), "--speeed"),
+        (("--out=-rf",), "--out"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else None,
 )
@@ -63,6 +66,28 @@ def test_a_bad_option_is_named(tmp_path: Path, experiment: Path, arguments: Sequ
     assert said in line
     assert "--help" in line
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    "option",
+    ["--moves=abc", "--moves=-1", "--moves=100000000000", "--seed=-1", "--speed=0", "--out=-rf"],
+)
+@pytest.mark.parametrize("command", ["server", "swarm simulate"])
+def test_an_error_names_the_option_and_the_help_of_the_command_that_was_called(
+    tmp_path: Path, experiment: Path, command: str, option: str
+) -> None:
+    module, *verb = command.split()
+    line = refused(module, *verb, experiment, "--out", tmp_path / "run", option)
+    called = "swarm-server" if module == "server" else command
+    assert option.split("=")[0] in line
+    assert line.endswith(f"(see `{called} --help`)")
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("option", ["--moves=100000000000", "--seed=-1", "--trial=-1", "--speed=0"])
+@pytest.mark.parametrize("module", ["robot_agent", "tracker_bridge"])
+def test_the_other_processes_know_the_same_limits(experiment: Path, module: str, option: str) -> None:
+    assert option.split("=")[0] in refused(module, experiment, option)
 
 
 def test_a_busy_port_is_named(tmp_path: Path, experiment: Path) -> None:
@@ -95,3 +120,23 @@ def test_a_second_agent_of_one_id_is_refused_and_both_hosts_are_named(experiment
         line = refused("robot_agent", experiment, "--robot", "loner", "--connect", endpoint)
     assert "robot 'loner' is already alive on host 'other-board'" in line
     assert repr(socket.gethostname()) in line
+
+
+@pytest.mark.parametrize("command", ["swarm simulate", "swarm trials", "robot_agent --robot=loner"])
+def test_every_command_looks_at_the_whole_experiment_before_it_starts(tmp_path: Path, command: str) -> None:
+    file = write_experiment(tmp_path, experiment_text(extra='[camera]\nconditions = "sunny"'))
+    module, *words = command.split()
+    out = ["--out", tmp_path / "run"] if module == "swarm" else []
+    assert "unknown camera conditions 'sunny'" in refused(module, *words, file, *out)
+    assert [path.name for path in tmp_path.iterdir()] == ["small.toml"]
+
+
+def test_state_that_cannot_be_written_is_found_before_the_run(experiment: Path) -> None:
+    line = refused("robot_agent", experiment, "--robot", "loner", "--state", "/proc/state")
+    assert "--state: " in line
+
+
+def test_a_laboratory_has_no_speed(tmp_path: Path, experiment: Path) -> None:
+    options = ("--listen", "tcp/127.0.0.1:0", "--speed", "3", "--out", tmp_path / "run")
+    assert "--speed is for simulations" in refused("server", experiment, *options)
+    assert not (tmp_path / "run").exists()

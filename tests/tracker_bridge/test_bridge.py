@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
+from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from tests.support.local_node import LocalNode
 from tracker_bridge.backends.interface import TrackedPose
@@ -72,3 +73,16 @@ def test_a_robot_without_a_believable_pose_is_reported_lost_once() -> None:
     assert len(events) == 1
     assert "a: no believable pose for 2 s" in str(events[0])
     assert [key for key, _ in rig.step(60, ("a", 0.5))] == ["robot/a/pose"]
+
+
+def test_a_robot_that_the_simulated_hand_carried_surprises_nobody() -> None:
+    """Each visit logged a warning; a jump of a robot that nobody carried still does."""
+    rig = Rig()
+    rig.step(0, ("a", 0.5), ("b", 0.5))
+    rig.node.t_ns = TICK_NS
+    rig.node.publish(topics.CARRY, pb.Carry(x_m=2.0, y_m=1.0), "a")
+    keys = [key for number in range(1, 7) for key, _ in rig.step(number, ("a", 2.0), ("b", 0.5))]
+    assert keys.count("robot/a/pose") == 2, "five that agree are still wanted before one is believed"
+    assert "tracker/event" not in keys
+    assert [key for key, _ in rig.step(7, ("b", 2.0))] == ["tracker/event"]
+    assert [key for key, _ in rig.step(22, ("a", 0.5))] == ["tracker/event"], "the hand is gone"

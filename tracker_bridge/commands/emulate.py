@@ -12,7 +12,7 @@ import numpy as np
 from swarm.clock import unix_clock
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
-from swarm.runtime.process import leave_on_signals
+from swarm.signals import leave_on_signals
 from tracker_bridge.backends.interface import Backend
 from tracker_bridge.backends.replay import replay
 from tracker_bridge.emulators.interface import Emulator

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from swarm.clock import unix_clock
 from swarm.config.experiment import Experiment
-from swarm.runtime.process import leave_on_signals
+from swarm.signals import leave_on_signals
 from tracker_bridge.arena_view import in_characters, write_picture
 from tracker_bridge.listening import listening
 from tracker_bridge.survey import table

@@ -34,3 +34,12 @@ def test_a_frame_of_the_wrong_length_or_format_cannot_be_made() -> None:
         Frame(0, 4, 2, "rgb565", bytes(8))
     with pytest.raises(ValueError, match="jpeg"):
         Frame(0, 4, 2, "jpeg", bytes(16))
+
+
+@pytest.mark.parametrize(("width", "height"), [(0, 0), (0, 4), (4, 0), (3, 2), (-2, -1)])
+@pytest.mark.parametrize("pixel_format", ["rgb565", "yuyv"])
+def test_a_frame_without_pixels_or_of_odd_width_cannot_be_made(
+    width: int, height: int, pixel_format: str
+) -> None:
+    with pytest.raises(ValueError, match="the width must be even, and neither 0"):
+        Frame(0, width, height, pixel_format, bytes(2 * width * height))

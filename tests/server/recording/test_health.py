@@ -21,6 +21,7 @@ TICK_NS = NS_PER_S // 10
 class Rig:
     def __init__(self) -> None:
         self.reported: list[tuple[str, str]] = []
+        self.levels: list[int] = []
         self.health = Health(Reporter(self))
         self._tick = 0
 
@@ -28,6 +29,7 @@ class Rig:
         assert (topic, robot) == (topics.SERVER_EVENT, "")
         assert isinstance(message, pb.Event)
         self.reported.append((message.name, message.text))
+        self.levels.append(message.level)
 
     def seconds(self, seconds: int, poses_every: int) -> None:
         """A tick has a pose whenever its number is a multiple, and always a move."""
@@ -54,6 +56,7 @@ def test_a_key_that_falls_behind_is_reported_once_and_again_when_it_recovers() -
     assert "robot/a/pose: 20%" in rig.reported[0][1]
     rig.seconds(40, poses_every=1)
     assert [name for name, _ in rig.reported] == ["slow", "recovered"]
+    assert rig.levels == [pb.Event.WARNING, pb.Event.INFO]
     assert rig.health.lowest_share["robot/a/pose"] < 0.25
 
 

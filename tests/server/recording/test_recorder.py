@@ -11,7 +11,14 @@ from mcap_protobuf.decoder import DecoderFactory
 
 from server.hubs.hub import Batch
 from server.recording.disk_sync import DiskSync
-from server.recording.recorder import LAID_DOWN_EVERY_S, MAX_MESSAGE_BYTES, Recorder, digest
+from server.recording.recorder import (
+    LAID_DOWN_EVERY_S,
+    MAX_MESSAGE_BYTES,
+    MOST_CHANNELS,
+    MOST_EPOCHS,
+    Recorder,
+    digest,
+)
 from swarm.errors import UserError
 from swarm.logs.ending import ending_of
 from swarm.logs.reader import LogError, LogReader
@@ -84,6 +91,19 @@ def test_what_the_key_table_does_not_know_is_counted(tmp_path: Path) -> None:
     recorder.close()
     assert recorder.unknown_keys == {"robot/a/secret": 2}
     assert read(recorder.path).messages == recorder.messages == 1
+
+
+def test_made_up_senders_end_no_recorder(tmp_path: Path) -> None:
+    """65,536 epochs of one key and as many robots: MCAP has no more channels, and others are still heard."""
+    recorder = Recorder(tmp_path / "log.mcap", ABOUT)
+    for epoch in range(1, 65_537):
+        items = [pose_item(1, epoch=epoch), Item(f"robot/r{epoch}/move", Header(1, 1, 0), b"x")]
+        recorder.write(Batch(1000 * epoch, items))
+    recorder.write_view("view/x", pb.Event(level=pb.Event.INFO), 65_537_000)
+    recorder.close()
+    assert sum(recorder.restarted_too_often.values()) == 2 * 65_536 - MOST_CHANNELS
+    assert recorder.restarted_too_often["robot/a/pose"] == 65_536 - MOST_EPOCHS
+    assert read(recorder.path).damage == []
 
 
 def test_what_was_flushed_can_be_read_without_a_close(tmp_path: Path) -> None:

@@ -98,6 +98,24 @@ WRONG = {
     "a place of three": ("[1.5, 0.0]", "[1.5, 0.0, 0.0]", ":19: 'south_west_m' has 3 values; it takes 2"),
     "no list": ("[1.5, 0.0]", "1.5", ":19: 'south_west_m' is a list, not 1.5"),
     "unknown move": ('["E"]', '["EAST"]', ":20: a path is a list of moves out of E, SE"),
+    "a path that is no list": (
+        '[["SE", "SE"], ["E"]]',
+        '["SE"]',
+        ":20: 'paths' is a list of lists, such as [['SE']]; 'SE' is no list",
+    ),
+    "one bracket": (
+        """[[robot]]
+id = "teacher"
+role = "expert"
+south_west_m = [0.0, 0.0]
+
+[[robot]]""",
+        "[robot]",
+        ":12: there may be several: write [[robot]], with two brackets, above each",
+    ),
+    "a table as a choice": ('"completion"', "{ a = 1 }", ":10: 'approach' is {'a': 1}; known: "),
+    "a very long value": ("moves = 100", f'moves = "{"x" * 5000}"', "xxx..."),
+    "too deep": ("moves = 100", f"moves = {'[' * 5000}", "not valid TOML: brackets in brackets, too deep"),
     "no TOML": ("[arena]", "[arena", "not valid TOML"),
 }
 
@@ -117,6 +135,12 @@ def test_paths_beyond_the_memory_and_for_an_expert(tmp_path: Path) -> None:
         load(tmp_path, GOOD.replace("epsilon = 0.2", "epsilon = 0.2\ncapacity = 1"))
     with pytest.raises(UserError, match=r":16: 'teacher' is no learner: it cannot be given paths"):
         load(tmp_path, GOOD.replace("[0.0, 0.0]", '[0.0, 0.0]\npaths = [["E"]]'))
+
+
+def test_a_robot_alone_is_told_that_there_is_nobody_to_watch(tmp_path: Path) -> None:
+    text = '[run]\nname = "x"\n[[robot]]\nid = "a"\nsouth_west_m = [0.0, 0.0]\nwatches = "zz"\n'
+    with pytest.raises(UserError, match=":6: 'a' watches 'zz'; there is no other robot"):
+        load(tmp_path, text)
 
 
 def test_a_file_that_is_not_there_or_no_text(tmp_path: Path) -> None:

@@ -45,6 +45,43 @@ def test_implausible_values_are_refused_by_name(message: Message, said: str) -> 
     assert said in str(error.value)
 
 
+@pytest.mark.parametrize(
+    "message", [pb.Order, pb.RunState, pb.Visit, pb.Event], ids=lambda kind: kind.__name__
+)
+def test_a_kind_is_said_or_the_message_is_refused(message: type[Message]) -> None:
+    """A robot halted, or all of them, on a message that said nothing (kind 0) or nothing known (99)."""
+    ((name, kinds),) = (
+        (field.name, field.enum_type) for field in message.DESCRIPTOR.fields if field.enum_type
+    )
+    known = {value.number for value in kinds.values} - {0}
+    assert known
+    for number in range(-1, 100):
+        payload = message(**{name: number}).SerializeToString()
+        if number in known:
+            assert getattr(decode(message, payload), name) == number
+        else:
+            with pytest.raises(BadMessageError):
+                decode(message, payload)
+
+
+def test_what_else_a_message_says_does_not_stand_for_its_kind() -> None:
+    with pytest.raises(BadMessageError, match=r"Order.kind is 0: it has to be said, by one of RUN, PAUSE"):
+        decode(pb.Order, pb.Order(visit=3, reason="lunch").SerializeToString())
+
+
+def test_an_empty_payload_is_no_message() -> None:
+    empty = {topic.message.__name__ for topic in TABLE if not _refused(topic.message, b"")}
+    assert empty == {"Command"}, "the robot stands, before it knows where"
+
+
+def _refused(message: type[Message], payload: bytes) -> bool:
+    try:
+        decode(message, payload)
+    except BadMessageError:
+        return True
+    return False
+
+
 def test_plausible_values_pass() -> None:
     check(pb.Pose(x_m=1.2, y_m=-0.1, theta_rad=-3.1, captured_t_ns=10**18))
     check(pb.Command(left_steps_per_s=1100.0, right_steps_per_s=-1100.0))

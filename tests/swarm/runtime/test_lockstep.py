@@ -167,7 +167,7 @@ def test_a_repeated_tick_gets_the_same_answer_and_is_not_stepped_again(swarm: Sw
 
 def test_an_answer_of_any_size_arrives(swarm: Swarm) -> None:
     """More than Zenoh's thread may send itself, and more than Zenoh's queue holds."""
-    event = pb.Event(text="x" * 2 * SENT_AT_ONCE_BYTES)
+    event = pb.Event(level=pb.Event.INFO, text="x" * 2 * SENT_AT_ONCE_BYTES)
 
     def talker(node: LockstepNode) -> Step:
         def step(t_ns: int) -> None:  # noqa: ARG001
@@ -187,7 +187,7 @@ def test_an_answer_of_any_size_arrives(swarm: Swarm) -> None:
 
 def test_ticks_repeated_at_once_are_answered_once_more(swarm: Swarm) -> None:
     """Twenty answers, each near the most that Zenoh's thread sends itself, would fill its queue."""
-    event = pb.Event(text="x" * (SENT_AT_ONCE_BYTES - 1000))
+    event = pb.Event(level=pb.Event.INFO, text="x" * (SENT_AT_ONCE_BYTES - 1000))
 
     def talker(node: LockstepNode) -> Step:
         return lambda t_ns: node.publish(topics.EVENT, event, f"a{t_ns}")
@@ -340,7 +340,7 @@ def test_a_silent_process_is_warned_of_and_given_up(swarm: Swarm) -> None:
     )
     swarm.session.publisher(LOCKSTEP_DONE, Delivery.EVERY).put(pack_answer(0, "silent"))
     hub.start()
-    hub.publish(topics.SERVER_EVENT, pb.Event(name="said before"))
+    hub.publish(topics.SERVER_EVENT, pb.Event(level=pb.Event.INFO, name="said before"))
     hub.advance()
     with pytest.raises(RunFailedError, match="silent did not answer tick 1 within 30 s"):
         hub.gather()

@@ -37,7 +37,7 @@ def test_the_newest_state_of_each_key_wins() -> None:
 def test_duplicates_and_messages_of_a_dead_process_are_left_out() -> None:
     subscription = Subscription(topics.MOVE)
     for epoch, sequence in ((5, 1), (5, 1), (5, 3), (5, 2), (6, 1), (5, 4)):
-        subscription.put("robot/a/move", header(sequence, epoch), b"")
+        subscription.put("robot/a/move", header(sequence, epoch), pb.Move(number=1).SerializeToString())
     assert [(one.header.epoch, one.header.sequence) for one in subscription.take()] == [
         (5, 1),
         (5, 3),

@@ -11,7 +11,7 @@ import pytest
 
 from swarm.errors import UserError
 from swarm.messages.topics import Delivery
-from swarm.runtime.zenoh_session import Inbox, Publisher, Session, SessionSettings
+from swarm.runtime.zenoh_session import LARGEST_MESSAGE_BYTES, Inbox, Publisher, Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 
 WAKE_S = 0.02
@@ -175,3 +175,15 @@ def test_a_zenoh_file_may_limit_what_clients_do(tmp_path: Path, endpoint: str) -
         introduced(allowed, inbox, wake)
         client.publisher("robot/b/move", Delivery.EVERY).put(b"forged")
         assert drained(allowed, inbox, wake, b"last") == [b"last"]
+
+
+def test_a_message_of_70_mb_is_dropped_and_the_next_one_arrives(hub: Session, client: Session) -> None:
+    inbox = hub.inbox("robot/*/move", Delivery.EVERY)
+    wake = Arrivals(hub, "robot/*/move")
+    publisher = client.publisher("robot/a/move", Delivery.EVERY)
+    introduced(publisher, inbox, wake)
+    publisher.put(bytes(70 << 20))
+    arrived = drained(publisher, inbox, wake, b"last")
+    assert [len(payload) for payload in arrived] == [len(b"last")]
+    publisher.put(bytes(LARGEST_MESSAGE_BYTES // 2))
+    assert LARGEST_MESSAGE_BYTES // 2 in map(len, drained(publisher, inbox, wake, b"end"))

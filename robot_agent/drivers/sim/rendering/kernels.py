@@ -15,20 +15,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, TypeAlias, TypeVar, cast
+from typing import Any, TypeAlias, TypeVar
 
-from numba import njit
 from numpy.typing import NDArray
+
+from swarm.compilation import compiled
 
 Array: TypeAlias = NDArray[Any]
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 
-def compiled(function: Kernel) -> Kernel:
-    return cast(Kernel, njit(cache=True, error_model="numpy")(function))
+def kernel(function: Kernel) -> Kernel:
+    """Divisions by zero give what numpy says, without a test for each."""
+    return compiled(function, error_model="numpy")
 
 
-@compiled
+@kernel
 def fill_span(
     fine: Array, column: int, top: float, bottom: float, red: float, green: float, blue: float, alpha: float
 ) -> None:
@@ -45,7 +47,7 @@ def fill_span(
         fine[2, column, row] += cover * (blue - fine[2, column, row])
 
 
-@compiled
+@kernel
 def wall_ahead(camera: Array, right: float, rooms: Array) -> tuple[float, bool]:
     """(depth, whether it runs north-south) of the nearest wall that a ray meets from inside its room."""
     ahead_x = camera[2] + right * camera[3]
@@ -61,7 +63,7 @@ def wall_ahead(camera: Array, right: float, rooms: Array) -> tuple[float, bool]:
     return nearest, north_south
 
 
-@compiled
+@kernel
 def paint_background(
     fine: Array, column: int, rows: int, camera: Array, right: float, raster: Array, panorama: Array
 ) -> None:
@@ -75,7 +77,7 @@ def paint_background(
             fine[channel, column, row] = panorama[channel, across, level]
 
 
-@compiled
+@kernel
 def paint_floor(
     fine: Array,
     column: int,
@@ -99,7 +101,7 @@ def paint_floor(
             fine[channel, column, row] = floor[channel] * grain
 
 
-@compiled
+@kernel
 def paint_room(
     fine: Array,
     walls_m: Array,
@@ -134,7 +136,7 @@ def paint_room(
         fill_span(fine, column, top, base, wall[0] * shade, wall[1] * shade, wall[2] * shade, 1.0)
 
 
-@compiled
+@kernel
 def paint_shadow(
     fine: Array,
     walls_m: Array,
@@ -165,7 +167,7 @@ def paint_shadow(
                 fine[channel, column, row] *= light
 
 
-@compiled
+@kernel
 def paint_band(fine: Array, walls_m: Array, camera: Array, raster: Array, band: Array, lamp: Array) -> None:
     """A coloured cylinder; its side edges are ramps as long as it moves during the exposure.
 
@@ -204,7 +206,7 @@ def paint_band(fine: Array, walls_m: Array, camera: Array, raster: Array, band: 
         fill_span(fine, column, top, bottom, red, green, blue, alpha)
 
 
-@compiled
+@kernel
 def paint_bands(fine: Array, walls_m: Array, camera: Array, raster: Array, bands: Array, lamp: Array) -> None:
     """All the cylinders that no wall hides, the farthest first, over the shadows of all."""
     for number in range(bands.shape[0]):
@@ -214,7 +216,7 @@ def paint_bands(fine: Array, walls_m: Array, camera: Array, raster: Array, bands
         paint_band(fine, walls_m, camera, raster, bands[number], lamp)
 
 
-@compiled
+@kernel
 def expose(
     fine: Array,
     map_x: Array,
@@ -254,7 +256,7 @@ def expose(
         raw[row, 0], raw[row, width + 1] = raw[row, 2], raw[row, width - 1]
 
 
-@compiled
+@kernel
 def demosaic(raw: Array, tone: Array, pixels: Array) -> None:
     """Bilinear demosaicing of an RGGB mosaic with a rim of one site, then the tone curve (bytes)."""
     height, width = pixels.shape[0], pixels.shape[1]
@@ -276,7 +278,7 @@ def demosaic(raw: Array, tone: Array, pixels: Array) -> None:
             pixels[row - 1, column - 1, 2] = tone[int(blue * steps)]
 
 
-@compiled
+@kernel
 def pack_rgb565(pixels: Array, out: Array) -> None:
     """Two bytes a pixel, the high byte first."""
     for row in range(pixels.shape[0]):
@@ -286,7 +288,7 @@ def pack_rgb565(pixels: Array, out: Array) -> None:
             out[row, column, 1] = ((green & 0x1C) << 3) | (blue >> 3)
 
 
-@compiled
+@kernel
 def pack_yuyv(pixels: Array, out: Array) -> None:
     """ITU-R BT.601, studio range: Y0 U Y1 V for two pixels, the colour taken from their mean."""
     for row in range(pixels.shape[0]):

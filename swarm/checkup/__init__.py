@@ -1,0 +1,1 @@
+"""What is looked at before anything starts: the experiment with its files, and the machine."""

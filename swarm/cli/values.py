@@ -1,0 +1,31 @@
+"""The types of values that options of several verbs share; an error says what is allowed."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+
+import typer
+
+from swarm.config import arguments
+
+
+def checked(read: Callable[[str], object]) -> Callable[[str | None], str | None]:
+    """A typer callback that lets pass what argparse would read."""
+
+    def check(text: str | None) -> str | None:
+        try:
+            if text is not None:
+                read(text)
+        except argparse.ArgumentTypeError as error:
+            raise typer.BadParameter(str(error)) from error
+        return text
+
+    return check
+
+
+def good_place(path: Path | None) -> Path | None:
+    """A typer callback for a file or directory that is made."""
+    checked(arguments.place)(None if path is None else str(path))
+    return path
