@@ -11,6 +11,7 @@ from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
 from swarm.cli.durations import durations_command
+from swarm.cli.info import info_command
 from swarm.cli.recover import recover_command
 from swarm.cli.reproduce import reproduce_command
 from swarm.cli.simulate import simulate_command
@@ -49,6 +50,7 @@ app.command("claims")(claims_command)
 app.command("analyze")(analyze_command)
 app.command("trials")(trials_command)
 app.command("durations")(durations_command)
+app.command("info")(info_command)
 app.command("check")(check_command)
 app.command("recover")(recover_command)
 
