@@ -13,6 +13,7 @@ from swarm.cli.claims import claims_command
 from swarm.cli.durations import durations_command
 from swarm.cli.info import info_command
 from swarm.cli.recover import recover_command
+from swarm.cli.replay import replay_command
 from swarm.cli.reproduce import reproduce_command
 from swarm.cli.simulate import simulate_command
 from swarm.cli.trials import trials_command
@@ -53,6 +54,7 @@ app.command("durations")(durations_command)
 app.command("info")(info_command)
 app.command("check")(check_command)
 app.command("recover")(recover_command)
+app.command("replay")(replay_command)
 
 
 def run() -> None:
