@@ -68,7 +68,7 @@ def _print(found: LogReplay, files: list[Path]) -> None:
     for remark in found.recording.remarks:
         typer.echo(f"note: {remark}")
     for robot, replay in found.replays.items():
-        typer.echo(f"{robot}: {replay.learner.moves:,} moves, {replay.first or 'all equal'}")
+        typer.echo(f"{robot}: {replay.moves:,} moves, {replay.first or 'all equal'}")
         if found.request.is_counterfactual and replay.diverged:
             typer.echo(f"  from move {replay.diverged.move} on it is another story: {replay.diverged}")
     for robot, replay in found.replays.items() if found.request.at is not None else ():

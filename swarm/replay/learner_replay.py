@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice, product
+from itertools import chain, combinations, islice
 from typing import Any
 
 from swarm.geometry import Move
@@ -26,6 +26,26 @@ GIVEN = "given"
 """Of a path that every start of a robot's process has from the experiment, whatever is in the log."""
 MOST_DISPLACED = 6
 """Between two moves: each may have ended a move or not, which makes at most 64 cases to try."""
+MOST_FORKS = 1000
+"""That are gone back to in a log: a wrong case shows after some ten moves, so that this takes a second."""
+
+GivenUp = tuple[Said, ...]
+"""The times that a robot was carried away in the middle of a move."""
+
+
+@dataclass(frozen=True)
+class Fork:
+    """A place in the log that may be read in several ways, and all that is needed to go back to it."""
+
+    place: int
+    cases: Iterator[GivenUp]
+    """Those that were not tried."""
+    epoch: int | None
+    learner: LearnerSnapshot
+    first: Difference | None
+    recorded_q: list[list[float]]
+    replays: deque[Any]
+    best_paths: deque[Any]
 
 
 @dataclass(frozen=True)
@@ -48,12 +68,17 @@ class LearnerReplay:
         given: Iterable[ObservedPath],
         recorded: RecordedLearning,
         without: Collection[int] = (),
+        given_up: Mapping[int, GivenUp] | None = None,
     ) -> None:
         self.learner = learner
         self.first: Difference | None = None
         """What differs first."""
         self.diverged: Difference | None = None
         """The first decision that differs, or a move that the log lacks: nothing after it can be replayed."""
+        self.q_values_that_differ: int | None = None
+        """Of the final table against the recorded values; None if the replay did not come to the end."""
+        self.given_up: dict[int, GivenUp] = dict(given_up or {})
+        """How the log was read where it may be read in several ways; what is given is not asked again."""
         self._recorded = recorded
         self._without = without
         for path in given:
@@ -65,35 +90,38 @@ class LearnerReplay:
         self._recorded_q = QTable(len(learner.controller.q.values))
         self._replays: deque[Any] = deque()
         self._best_paths: deque[Any] = deque()
+        self._forks: list[Fork] = []
+        self._gone_back = 0
 
-    def run(self, until: int | None = None) -> None:
-        """To the end, to the first decision that differs, or until the robot has made so many moves."""
-        between: list[Said] = []
-        for said in self._recorded.story:
-            if not isinstance(said.message, pb.Move):
-                between.append(said)
-                continue
-            self._move(said, between)
-            between = []
-            if self.diverged or self.learner.moves == until:
-                return
+    def run(self, at: int | None = None) -> LearnerSnapshot | None:
+        """To the end, or to the first decision that differs; the learner as it was after `at` moves."""
+        steps, place, then, furthest = self._recorded.steps(), 0, None, None
+        while place < len(steps):
+            self._step(place, *steps[place])
+            if self.learner.moves == at and not self.diverged:
+                then = self.learner.snapshot()
+            if self.diverged:
+                furthest = max(filter(None, (furthest, (self.diverged, self.first))), key=_how_far)
+            if self.diverged and not self._goes_back():
+                self.diverged, self.first = furthest or (None, None)
+                return then
+            place, self.diverged = (self._forks[-1].place, None) if self.diverged else (place + 1, None)
         self._check_left_over()
+        self.q_values_that_differ = self._q_values_that_differ()
+        return then
 
     @property
-    def q_values_that_differ(self) -> int | None:
-        """Of the final table against the recorded values; None if the replay did not come to the end."""
-        if self.diverged:
-            return None
-        rows = zip(self._recorded_q.values, self.learner.controller.q.values, strict=True)
-        return sum(not is_same(theirs, ours) for row in rows for theirs, ours in zip(*row, strict=True))
+    def moves(self) -> int:
+        """How many were compared."""
+        return self.diverged.move - 1 if self.diverged else self.learner.moves
 
-    def _move(self, said: Said, between: Sequence[Said]) -> None:
-        """Ask, compare, tell what came of it, compare again."""
+    def _step(self, place: int, between: Sequence[Said], said: Said) -> None:
+        """Ask for a move, compare, tell what came of it, compare again."""
         recorded = said.message
         if said.epoch != self._epoch:
             self._start(said.epoch, recorded.number)
-            between = [each for each in between if each.epoch == said.epoch]
-        self._note(self._difference_of_choice(recorded, between))
+        between = [each for each in between if each.epoch == said.epoch]
+        self._note(self._difference_of_choice(recorded, between, self._reading_of(place, between)))
         if self.diverged:
             return
         made = self.learner.learn(_transition(recorded))
@@ -102,6 +130,51 @@ class LearnerReplay:
             self._note(found)
         if self.learner.moves in self._resumed_after:
             self._saved[self.learner.moves] = self.learner.snapshot()
+
+    def _reading_of(self, place: int, between: Sequence[Said]) -> GivenUp:
+        """Where a robot was carried away, the log does not say whether it was making a move. What it decided
+        from there on does: each case is tried until it leads to a decision that was not made.
+        """
+        if place not in self.given_up:
+            places = [said for said in between if displaced_from(said) is not None][:MOST_DISPLACED]
+            if not places:
+                return ()
+            cases = chain.from_iterable(combinations(places, size) for size in range(len(places) + 1))
+            self._forks.append(self._fork(place, cases))
+            self.given_up[place] = next(cases)
+        return self.given_up[place]
+
+    def _fork(self, place: int, cases: Iterator[GivenUp]) -> Fork:
+        return Fork(
+            place,
+            cases,
+            self._epoch,
+            self.learner.snapshot(),
+            self.first,
+            self._recorded_q.snapshot(),
+            self._replays.copy(),
+            self._best_paths.copy(),
+        )
+
+    def _goes_back(self) -> bool:
+        """To the last place with a case that was not tried, if there is one."""
+        while self._forks and self._gone_back < MOST_FORKS:
+            fork = self._forks[-1]
+            case = next(fork.cases, None)
+            if case is not None:
+                self._gone_back += 1
+                self._go_back_to(fork, case)
+                return True
+            del self.given_up[self._forks.pop().place]
+        return False
+
+    def _go_back_to(self, fork: Fork, case: GivenUp) -> None:
+        self.given_up[fork.place] = case
+        self._epoch = fork.epoch
+        self.learner.restore(fork.learner)
+        self.first = fork.first
+        self._recorded_q.restore(fork.recorded_q)
+        self._replays, self._best_paths = fork.replays.copy(), fork.best_paths.copy()
 
     def _note(self, found: Difference | None) -> None:
         self.first = self.first or found
@@ -120,10 +193,12 @@ class LearnerReplay:
         self._replays = deque(self._recorded.results[topics.REPLAY, epoch])
         self._best_paths = deque(self._recorded.results[topics.BEST_PATH, epoch])
 
-    def _difference_of_choice(self, recorded: pb.Move, between: Sequence[Said]) -> Difference | None:
+    def _difference_of_choice(
+        self, recorded: pb.Move, between: Sequence[Said], given_up: GivenUp
+    ) -> Difference | None:
         if recorded.number != self.learner.moves + 1:
             return Difference(self.learner.moves + 1, "number", recorded.number, self.learner.moves + 1)
-        trial = self._asked(recorded, between)
+        trial = self._trial(recorded.state, between, given_up)
         number, action = recorded.number, trial.choice.action
         expected = [recorded_replay(message) for message in islice(self._replays, len(trial.rejected))]
         for _ in expected:
@@ -136,33 +211,12 @@ class LearnerReplay:
             return Difference(number, "rejected replay", expected, trial.rejected)
         return None
 
-    def _asked(self, recorded: pb.Move, between: Sequence[Said]) -> Trial:
-        """Where a robot was carried away, the log does not say whether it was making a move: of all cases
-        the one that leads to what was recorded, or else that of no move.
-        """
-        places = [said for said in between if _displaced_from(said) is not None][:MOST_DISPLACED]
-        if not places:
-            return self._trial(recorded.state, between, ())
-        before = self.learner.snapshot()
-        for cases in product((False, True), repeat=len(places)):
-            given_up = [place for place, was_moving in zip(places, cases, strict=True) if was_moving]
-            trial = self._trial(recorded.state, between, given_up)
-            if self._is_recorded(recorded, trial):
-                return trial
-            self.learner.restore(before)
-        return self._trial(recorded.state, between, ())
-
-    def _is_recorded(self, recorded: pb.Move, trial: Trial) -> bool:
-        expected = [recorded_replay(message) for message in islice(self._replays, len(trial.rejected))]
-        decided = (recorded.action, recorded.path) == (trial.choice.action, trial.path)
-        return decided and is_same(expected, trial.rejected)
-
-    def _trial(self, state: int, between: Iterable[Said], given_up: Collection[Said]) -> Trial:
+    def _trial(self, state: int, between: Iterable[Said], given_up: GivenUp) -> Trial:
         choices = []
         for said in between:
             self._take(said.message)
             if said in given_up:
-                choices.append(self.learner.choose(_displaced_from(said) or 0))
+                choices.append(self.learner.choose(displaced_from(said) or 0))
                 self.learner.abandon()
         choices.append(self.learner.choose(state))
         rejected = [told(choice.rejected) for choice in choices if choice.rejected]
@@ -202,6 +256,10 @@ class LearnerReplay:
             if message.started_move + message.moves <= self.learner.moves:
                 self._note(Difference(self.learner.moves, "ended replay", recorded_replay(message), None))
 
+    def _q_values_that_differ(self) -> int:
+        rows = zip(self._recorded_q.values, self.learner.controller.q.values, strict=True)
+        return sum(not is_same(theirs, ours) for row in rows for theirs, ours in zip(*row, strict=True))
+
 
 def _transition(recorded: pb.Move) -> Transition:
     return Transition(
@@ -209,10 +267,14 @@ def _transition(recorded: pb.Move) -> Transition:
     )
 
 
-def _displaced_from(said: Said) -> int | None:
+def displaced_from(said: Said) -> int | None:
     """The cell that a robot was standing in or leaving when it was carried away, by its event."""
     message = said.message
     if not isinstance(message, pb.Event) or message.name != "displaced":
         return None
     cell = re.search(r"cell (\d+)", message.text)
     return int(cell[1]) if cell else None
+
+
+def _how_far(found: tuple[Difference, Difference | None]) -> int:
+    return found[0].move

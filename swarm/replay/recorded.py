@@ -46,9 +46,17 @@ class RecordedLearning:
     results: dict[tuple[Topic[Any], int], list[Any]] = field(default_factory=lambda: defaultdict(list))
     """(topic, epoch) -> messages."""
 
-    @property
-    def moves(self) -> Iterator[Said]:
-        return (said for said in self.story if isinstance(said.message, pb.Move))
+    def steps(self) -> list[tuple[list[Said], Said]]:
+        """Each move, with what happened since the move before."""
+        found: list[tuple[list[Said], Said]] = []
+        between: list[Said] = []
+        for said in self.story:
+            if isinstance(said.message, pb.Move):
+                found.append((between, said))
+                between = []
+            else:
+                between.append(said)
+        return found
 
     @property
     def paths(self) -> set[int]:
@@ -58,7 +66,7 @@ class RecordedLearning:
     def first_moves(self) -> dict[int, int]:
         """Epoch -> the number of its first move: above 1 for a robot that went on from a checkpoint."""
         found: dict[int, int] = {}
-        for said in self.moves:
+        for _, said in self.steps():
             found.setdefault(said.epoch, said.message.number)
         return found
 

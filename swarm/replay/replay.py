@@ -9,7 +9,7 @@ from typing import Any
 
 from swarm.errors import UserError, nearest
 from swarm.learning.learner import Learner
-from swarm.replay.learner_replay import LearnerReplay
+from swarm.replay.learner_replay import GivenUp, LearnerReplay
 from swarm.replay.recorded import Recording, read_recording
 
 
@@ -51,7 +51,7 @@ class LogReplay:
         return {
             "log": self.recording.identity.name,
             "identical": self.is_identical,
-            "moves": sum(each.learner.moves for each in self.replays.values()),
+            "moves": sum(each.moves for each in self.replays.values()),
             "with": dict(request.changes),
             "without_paths": sorted(request.without),
             "remarks": self.recording.remarks,
@@ -60,7 +60,7 @@ class LogReplay:
 
     def _robot(self, replay: LearnerReplay) -> dict[str, Any]:
         said = {
-            "moves": replay.learner.moves,
+            "moves": replay.moves,
             "first_difference": vars(replay.first) if replay.first else None,
             "diverged": vars(replay.diverged) if replay.diverged else None,
             "q_values_that_differ": replay.q_values_that_differ,
@@ -71,17 +71,40 @@ class LogReplay:
 def replay_log(request: Request) -> LogReplay:
     """Replay a log's learners; UserError for a robot, path or move that it does not have."""
     recording = read_recording(request.logs)
-    experiment = recording.experiment(dict(request.changes))
-    replays = {}
-    for robot in _robots(request, recording):
-        settings = experiment.robot_named(robot)
-        learner = experiment.learner(settings, recording.identity.trial)
-        replay = LearnerReplay(learner, settings.given_paths(), recording.learning[robot], request.without)
-        replay.run(request.at)
-        if request.at is not None:
-            _check_arrived(robot, replay, request.at)
-        replays[robot] = replay
+    replays = {robot: _replayed(robot, request, recording) for robot in _robots(request, recording)}
     return LogReplay(request, recording, replays)
+
+
+def _replayed(robot: str, request: Request, recording: Recording) -> LearnerReplay:
+    """One learner's replay; where the log may be read in several ways, a changed learner is not asked."""
+    given_up = None
+    if request.is_counterfactual:
+        plain = _learner_replay(robot, {}, (), recording)
+        plain.run()
+        given_up = plain.given_up
+    replay = _learner_replay(robot, request.changes, request.without, recording, given_up)
+    then = replay.run(request.at)
+    if request.at is not None:
+        if then is None:
+            reason = replay.diverged or f"the log has {replay.moves} moves of it"
+            raise UserError(
+                f"{robot}: nothing is known of move {request.at}: {reason}; choose an earlier --at"
+            )
+        replay.learner.restore(then)
+    return replay
+
+
+def _learner_replay(
+    robot: str,
+    changes: Mapping[str, Any],
+    without: Collection[int],
+    recording: Recording,
+    given_up: Mapping[int, GivenUp] | None = None,
+) -> LearnerReplay:
+    experiment = recording.experiment(dict(changes))
+    settings = experiment.robot_named(robot)
+    learner = experiment.learner(settings, recording.identity.trial)
+    return LearnerReplay(learner, settings.given_paths(), recording.learning[robot], without, given_up)
 
 
 def moment(learner: Learner) -> dict[str, Any]:
@@ -116,12 +139,3 @@ def _robots(request: Request, recording: Recording) -> list[str]:
     for number in set(request.without) - paths:
         raise UserError(f"{request.logs[0]}: no path {number} was remembered; known: {sorted(paths)}")
     return robots
-
-
-def _check_arrived(robot: str, replay: LearnerReplay, move: int) -> None:
-    if replay.diverged:
-        raise UserError(
-            f"{robot}: nothing is known of move {move}: {replay.diverged}; choose an earlier --at"
-        )
-    if replay.learner.moves != move:
-        raise UserError(f"{robot}: made {replay.learner.moves} moves; choose --at from 1 to that")
