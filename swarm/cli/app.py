@@ -11,6 +11,7 @@ from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
 from swarm.cli.durations import durations_command
+from swarm.cli.export import export_command
 from swarm.cli.info import info_command
 from swarm.cli.recover import recover_command
 from swarm.cli.replay import replay_command
@@ -55,6 +56,7 @@ app.command("info")(info_command)
 app.command("check")(check_command)
 app.command("recover")(recover_command)
 app.command("replay")(replay_command)
+app.command("export")(export_command)
 
 
 def run() -> None:
