@@ -85,9 +85,8 @@ def assert_stops_soon(emulation: Emulation, since_ns: int) -> None:
 def signal_and_measure(link: str, model: str, place: Path, number: signal.Signals, times: int) -> None:
     for _ in range(times):
         with driven(link, model, place) as (emulation, agent):
-            since_ns = time.monotonic_ns()
             os.kill(agent.pid, number)
-            assert_stops_soon(emulation, since_ns)
+            assert_stops_soon(emulation, since_ns=time.monotonic_ns())
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=lambda number: number.name)

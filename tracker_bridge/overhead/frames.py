@@ -22,6 +22,8 @@ Grey = npt.NDArray[np.uint8]
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm")
 USUAL_RATE_HZ = 30.0
 """Of a folder of pictures, which does not say."""
+UNPLUGGED_S = 0.1
+"""How long a camera that gives no picture is left alone; the bridge tells meanwhile that robots are lost."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +79,7 @@ class LiveFrames:
         self._capture = capture
         self._delay_ns = round(delay_s * NS_PER_S)
         self._newest: tuple[Grey, int] | None = None
-        self._open = True
+        self._closing = threading.Event()
         self._thread = threading.Thread(target=self._read, daemon=True)
         self._thread.start()
 
@@ -89,17 +91,17 @@ class LiveFrames:
         return [Frame(picture, t_ns - (time.monotonic_ns() - received_ns) - self._delay_ns)]
 
     def close(self) -> None:
-        self._open = False
+        self._closing.set()
         self._thread.join()
         self._capture.release()
 
     def _read(self) -> None:
-        while self._open:
+        while not self._closing.is_set():
             read, picture = self._capture.read()
             if read:
                 self._newest = (_grey(np.asarray(picture, dtype=np.uint8)), time.monotonic_ns())
             else:
-                time.sleep(0.1)  # unplugged: the bridge tells that robots are lost, and it may come back
+                self._closing.wait(UNPLUGGED_S)
 
 
 def open_frames(source: str, delay_s: float = 0.0) -> FrameSource:
