@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from swarm.clock import NS_PER_S
 from swarm.errors import UserError
@@ -20,8 +20,7 @@ from swarm.logs.reader import LogChannel, LogReader, nothing
 CLOSED, OPEN, DAMAGED = "closed", "open", "damaged"
 
 
-@dataclass(frozen=True)
-class TopicInfo:
+class TopicInfo(NamedTuple):
     """The messages of one topic, those of all its senders' starts together."""
 
     messages: int
@@ -72,7 +71,8 @@ class LogInfo:
             "by": "index" if self.by_index else "scan",
             "damage": list(self.damage),
             "topics": {
-                name: {**vars(topic), "rate_hz": self.rate_hz(name)} for name, topic in self.topics.items()
+                name: {**topic._asdict(), "rate_hz": self.rate_hz(name)}
+                for name, topic in self.topics.items()
             },
             "run": self.run,
             "trial_ended": self.trial_ended,

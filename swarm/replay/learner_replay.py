@@ -92,22 +92,20 @@ class LearnerReplay:
         self._best_paths: deque[Any] = deque()
         self._forks: list[Fork] = []
         self._gone_back = 0
+        self._ends: list[tuple[Difference, Difference | None]] = []
+        """Of each reading that was tried: where it diverged, and what differed first."""
 
     def run(self, at: int | None = None) -> LearnerSnapshot | None:
         """To the end, or to the first decision that differs; the learner as it was after `at` moves."""
-        steps, place, then, furthest = self._recorded.steps(), 0, None, None
-        while place < len(steps):
+        steps, place, then = self._recorded.steps(), 0, None
+        while place < len(steps) and not self.diverged:
             self._step(place, *steps[place])
             if self.learner.moves == at and not self.diverged:
                 then = self.learner.snapshot()
-            if self.diverged:
-                furthest = max(filter(None, (furthest, (self.diverged, self.first))), key=_how_far)
-            if self.diverged and not self._goes_back():
-                self.diverged, self.first = furthest or (None, None)
-                return then
-            place, self.diverged = (self._forks[-1].place, None) if self.diverged else (place + 1, None)
-        self._check_left_over()
-        self.q_values_that_differ = self._q_values_that_differ()
+            place = self._other_reading(place) if self.diverged else place + 1
+        if not self.diverged:
+            self._check_left_over()
+            self.q_values_that_differ = self._q_values_that_differ()
         return then
 
     @property
@@ -155,6 +153,18 @@ class LearnerReplay:
             self._replays.copy(),
             self._best_paths.copy(),
         )
+
+    def _other_reading(self, place: int) -> int:
+        """Where to go on after a divergence: at the last place that may be read otherwise. If there is none,
+        the replay stays where it is, and ends as the reading that led furthest.
+        """
+        assert self.diverged is not None
+        self._ends.append((self.diverged, self.first))
+        if self._goes_back():
+            self.diverged = None
+            return self._forks[-1].place
+        self.diverged, self.first = max(self._ends, key=lambda end: end[0].move)
+        return place
 
     def _goes_back(self) -> bool:
         """To the last place with a case that was not tried, if there is one."""
@@ -274,7 +284,3 @@ def displaced_from(said: Said) -> int | None:
         return None
     cell = re.search(r"cell (\d+)", message.text)
     return int(cell[1]) if cell else None
-
-
-def _how_far(found: tuple[Difference, Difference | None]) -> int:
-    return found[0].move

@@ -40,6 +40,7 @@ class LogReplay:
     request: Request
     recording: Recording
     replays: dict[str, LearnerReplay]
+    """By robot."""
 
     @property
     def is_identical(self) -> bool:

@@ -126,13 +126,16 @@ def test_a_missing_move_ends_the_replay(learnt: tuple[Path, LearningRobot], tmp_
     assert replay.moves == 49
 
 
-def test_a_robot_that_was_carried_away_in_the_middle_of_a_move(tmp_path: Path) -> None:
-    """The log does not say whether it had decided; what it decided afterwards does."""
+@pytest.mark.parametrize("killed", [False, True])
+def test_a_robot_that_was_carried_away_in_the_middle_of_a_move(tmp_path: Path, killed: bool) -> None:
+    """The log does not say whether it had decided; what it decided afterwards does, also after a restart."""
     robot = LearningRobot(tmp_path / "l.mcap")
     for _ in range(20):
         robot.move(7)
         robot.give_up_a_move()
         robot.move(3)
+        if killed:
+            robot.start(robot.policy.snapshot())
         robot.carried_away()
     check_identical(replay_log(Request((robot.close(),))), 200)
 
