@@ -12,7 +12,10 @@ from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
 from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
+from swarm.cli.export import export_command
+from swarm.cli.info import info_command
 from swarm.cli.recover import recover_command
+from swarm.cli.replay import replay_command
 from swarm.cli.reproduce import reproduce_command
 from swarm.cli.simulate import simulate_command
 from swarm.cli.trials import trials_command
@@ -51,8 +54,11 @@ app.command("claims")(claims_command)
 app.command("analyze")(analyze_command)
 app.command("trials")(trials_command)
 app.command("durations")(durations_command)
+app.command("info")(info_command)
 app.command("check")(check_command)
 app.command("recover")(recover_command)
+app.command("replay")(replay_command)
+app.command("export")(export_command)
 
 
 def _help_of(error: typer.TyperException) -> str:

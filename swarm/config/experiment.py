@@ -7,10 +7,11 @@ one id or compartments that overlap.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -263,7 +264,17 @@ class Experiment:
     @classmethod
     def load(cls, path: Path) -> Experiment:
         """Read and check an experiment file; UserError names the file, the line and the cure."""
-        file = ConfigFile(path)
+        return cls._of(ConfigFile(path))
+
+    @classmethod
+    def of_log(cls, log: str, text: str, learning: Mapping[str, Any]) -> Experiment:
+        """The experiment that a log was recorded from, with these values in its [learning]."""
+        file = ConfigFile(Path(f"{log} (its experiment)"), text)
+        file.values["learning"] = {**file.values.get("learning", {}), **learning}
+        return cls._of(file)
+
+    @classmethod
+    def _of(cls, file: ConfigFile) -> Experiment:
         experiment = file.settings(cls)
         _check(experiment, file)
         return experiment

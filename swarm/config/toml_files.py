@@ -30,11 +30,14 @@ class Between:
 
 
 class ConfigFile:
-    """A TOML file with the places of its keys, for errors that a person can follow."""
+    """A TOML file with the places of its keys, for errors that a person can follow.
 
-    def __init__(self, path: Path) -> None:
+    `text` is what it says, if that stands somewhere else than in a file.
+    """
+
+    def __init__(self, path: Path, text: str | None = None) -> None:
         self.path = path
-        self._lines = _read(path).splitlines()
+        self._lines = (_read(path) if text is None else text).splitlines()
         try:
             self.values: dict[str, Any] = tomllib.loads("\n".join(self._lines))
         except ValueError as error:

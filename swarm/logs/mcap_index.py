@@ -17,7 +17,6 @@ from swarm.logs.mcap_records import (
     CRC,
     FOOTER_BYTES,
     MAGIC,
-    MAX_RECORD_BYTES,
     RECORD_HEADER,
     BrokenRecordError,
     Frame,
@@ -25,6 +24,7 @@ from swarm.logs.mcap_records import (
     crc_of,
     decoded,
     frame_at,
+    read_record,
     size_of,
 )
 
@@ -89,10 +89,7 @@ def _take_all(index: Index, file: BinaryIO, end: Frame) -> None:
     index.verified = footer.summary_crc == crc
     while offset < end.offset_bytes:
         frame = frame_at(file, offset, end.offset_bytes)
-        if frame.length_bytes > MAX_RECORD_BYTES:
-            raise BrokenRecordError(f"it holds a record of {frame.length_bytes} bytes")
-        file.seek(frame.body_bytes)
-        _take(index, decoded(frame.opcode, file.read(frame.length_bytes)))
+        _take(index, read_record(file, frame))
         offset = frame.end_bytes
 
 

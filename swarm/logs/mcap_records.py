@@ -151,3 +151,11 @@ def kind(opcode: int) -> str:
     """The name of a kind of record, for people."""
     names = {int(known): known.name for known in Opcode}
     return names.get(opcode, f"0x{opcode:02x}").lower().replace("_", " ")
+
+
+def read_record(file: BinaryIO, frame: Frame) -> object:
+    """What the record at a place says, as `decoded`; BrokenRecordError also for one that is too large."""
+    if frame.length_bytes > MAX_RECORD_BYTES:
+        raise BrokenRecordError(f"it holds a record of {frame.length_bytes} bytes")
+    file.seek(frame.body_bytes)
+    return decoded(frame.opcode, file.read(frame.length_bytes))
