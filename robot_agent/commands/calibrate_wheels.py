@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-from contextlib import suppress
 from dataclasses import replace
 
 from robot_agent.addresses import add_address_argument, addresses
 from robot_agent.assembly import Assembly, Place
+from robot_agent.commands.node_steps import run_steps
 from robot_agent.drivers.kinematics import EpuckGeometry
 from robot_agent.drivers.registry import make_driver
 from robot_agent.navigation.wheel_calibration import Leg, WheelCalibration, calibration_of, drive_squares
@@ -24,10 +24,6 @@ from swarm.runtime.process import (
     leave_on_signals,
     load_experiment,
 )
-
-
-class SquaresDrivenError(Exception):
-    """The squares are driven: what ends the steps of a node."""
 
 
 def calibrate_wheels(arguments: argparse.Namespace) -> None:
@@ -53,23 +49,10 @@ def _legs(experiment: Experiment, node: Node, assembly: Assembly, robot: str) ->
     def poses() -> list[Pose]:
         return [Pose(fix.message.x_m, fix.message.y_m, fix.message.theta_rad) for fix in fixes.take()]
 
-    squares = drive_squares(body, poses, nominal, experiment.simulation.tick_s)
-    next(squares)
-    legs: list[Leg] = []
-
-    def step(t_ns: int) -> None:
-        try:
-            squares.send(t_ns)
-        except StopIteration as driven:
-            legs.extend(driven.value)
-            raise SquaresDrivenError from driven
-
     try:
-        with suppress(SquaresDrivenError):
-            node.run(step)
+        return run_steps(node, drive_squares(body, poses, nominal, experiment.simulation.tick_s))
     finally:
         body.close()
-    return legs
 
 
 def _text(calibration: WheelCalibration) -> str:

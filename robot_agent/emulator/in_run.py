@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from contextlib import ExitStack
 from functools import partial
 
@@ -24,6 +25,7 @@ from swarm.runtime.process import (
     leave_on_signals,
     load_experiment,
 )
+from swarm.runtime.subscription import Subscription
 
 
 def emulate_robots(arguments: argparse.Namespace) -> None:
@@ -42,7 +44,10 @@ def emulate_robots(arguments: argparse.Namespace) -> None:
             )
             for robot, address in places.items()
         ]
-        node.run(partial(_step, robots))
+        truths: dict[str, Pose] = {}
+        for robot in robots:
+            robot.see(experiment, truths, arguments.trial)
+        node.run(partial(_step, robots, node.subscribe(topics.TRUTH), truths))
 
 
 def emulation_of(
@@ -71,6 +76,16 @@ class EmulatedInRun:
         self._name = name
         self._carries = node.subscribe(topics.CARRY, name)
 
+    def see(self, experiment: Experiment, truths: Mapping[str, Pose], trial: int) -> None:
+        """Give a robot that watches another something to see; rendering is loaded for nobody else."""
+        settings, robot = experiment.robot_named(self._name), self._emulation.robot
+        if not settings.watches:
+            return
+        from robot_agent.emulator.camera import rendered_look
+
+        rng = experiment.generator(settings, trial, "camera")
+        robot.look = rendered_look(experiment, settings, robot.truth, truths, rng)
+
     def step(self) -> None:
         emulation = self._emulation
         with emulation.lock:
@@ -83,7 +98,15 @@ class EmulatedInRun:
         self._node.publish(topics.TRUTH, message, self._name)
 
 
-def _step(robots: list[EmulatedInRun], t_ns: int) -> None:  # noqa: ARG001
+def _step(
+    robots: list[EmulatedInRun],
+    told: Subscription[pb.Truth],
+    truths: dict[str, Pose],
+    t_ns: int,  # noqa: ARG001
+) -> None:
+    for received in told.take():
+        truth = received.message
+        truths[received.robot] = Pose(truth.x_m, truth.y_m, truth.theta_rad)
     for robot in robots:
         robot.step()
 

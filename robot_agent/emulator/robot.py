@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable
 
 import numpy as np
 
@@ -29,6 +30,15 @@ SPEEDS_REMEMBERED = 10_000
 """Changes of speed kept for whoever measures when the wheels stopped: hours of driving."""
 
 
+Look = Callable[[int, int, int], bytes]
+"""What a camera of this width and height shows at a time: RGB565, high byte first."""
+
+
+def grey_ramp(width: int, height: int, t_ns: int) -> bytes:  # noqa: ARG001
+    """An image of nothing."""
+    return np.arange(width * height, dtype=np.uint32).astype(">u2").tobytes()
+
+
 class EmulatedRobot:
     """One robot. All times are the emulator's own and never go back.
 
@@ -45,6 +55,8 @@ class EmulatedRobot:
     ) -> None:
         self.faults = faults
         self.selector = selector
+        self.look: Look = grey_ramp
+        """What stands before its camera."""
         self.lights = 0
         """Bits 0 to 7 the ring, 8 the body, 9 the front."""
         self.commanded = (0, 0)

@@ -49,7 +49,7 @@ def stand(robot: LocatedRobot) -> Generator[None, int, Arrival]:
             return Arrival(t_ns, pose)
 
 
-def imitate(
+def imitate_pattern(
     robot: LocatedRobot,
     motion: Motion,
     geometry: EpuckGeometry,

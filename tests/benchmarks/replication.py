@@ -1,6 +1,7 @@
 """How exactly robots replicate patterns that they saw, behind each link.
 
-`python -m tests.benchmarks.replication` prints one JSON line: mean and worst corner error of random five-segment patterns, by the simulated truth.
+`python -m tests.benchmarks.replication` prints one JSON line: mean and worst corner error of random
+five-segment patterns, by the simulated truth.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from robot_agent.drivers.sim.rendering.camera import SceneCamera, SimulatedCamer
 from robot_agent.drivers.sim.rendering.conditions import conditions
 from robot_agent.drivers.sim.rendering.scene import Rectangle, Scene, SceneRobot
 from robot_agent.imitation.copying import NoCopy
-from robot_agent.imitation.imitation import Imitation, imitate, stand
+from robot_agent.imitation.imitation import Imitation, imitate_pattern, stand
 from robot_agent.imitation.observer import Watch
 from robot_agent.imitation.pattern import Place
 from robot_agent.imitation.replication import Arrival, Command, Drive, Turn, replicate
@@ -152,7 +152,7 @@ class ImitatingPair:
             pose_at = self.observer.located.pose_at
             return Watch(camera, detector, pose_at, t_ns, WATCH_S, FRAMES_PER_S)
 
-        watching = imitate(
+        watching = imitate_pattern(
             self.observer.located, self.observer.motion, self.observer.geometry, begin, self._profile
         )
         return self._together(show(self.demonstrator, commands), watching)

@@ -1,4 +1,4 @@
-"""`robot-agent calibrate`: a colour table for a skirt, learnt from frames of it."""
+"""`robot-agent calibrate skirt`: a colour table for a skirt, learnt from frames of it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST_FRAMES = 100
 """More add time and no colours: a skirt in one light is learnt from a few."""
 
 
-def calibrate(arguments: argparse.Namespace) -> None:
+def calibrate_skirt(arguments: argparse.Namespace) -> None:
     """Learn the table, write it, and say how it came out."""
     model = load_camera_model(arguments.camera)
     if arguments.simulated:
@@ -61,9 +61,9 @@ def _simulated(model: CameraModel, skirt: str, light: str, seed: int) -> list[Fr
     return calibration_frames(camera, skirt, CALIBRATION_RANGES_M)
 
 
-def calibrate_parser() -> OneLineParser:
+def calibrate_skirt_parser() -> OneLineParser:
     parser = OneLineParser(
-        prog="robot-agent calibrate",
+        prog="robot-agent calibrate skirt",
         description="Learn the colour of a skirt. Put the robot that wears it 20 to 50 cm straight ahead of "
         "the camera, in a white-walled compartment, and keep a few frames.",
     )
