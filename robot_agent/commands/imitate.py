@@ -11,6 +11,7 @@ from robot_agent.addresses import add_address_argument, addresses
 from robot_agent.assembly import Assembly, Place
 from robot_agent.commands.node_steps import run_steps
 from robot_agent.drivers.interfaces import Driver, DriverParts
+from robot_agent.drivers.reflex import with_reflex
 from robot_agent.drivers.registry import make_driver
 from robot_agent.imitation.assembly import sight_of
 from robot_agent.imitation.copying import NoCopy
@@ -52,7 +53,9 @@ def imitate(arguments: argparse.Namespace) -> None:
         parts = Assembly(experiment, node, arguments.trial, place).driver_parts(arguments.robot)
         driver = make_driver(parts)
         fixes = None if arguments.by_wheels else fixes_of(node, arguments.robot)
-        located = LocatedRobot(driver.body, PoseEstimator(parts.geometry), fixes)
+        located = LocatedRobot(
+            with_reflex(driver.body, parts.robot.keep_off_m), PoseEstimator(parts.geometry), fixes
+        )
         try:
             steps = (
                 _shown(located, parts, commands) if commands else _imitated(located, parts, driver, arguments)

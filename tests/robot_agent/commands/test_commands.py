@@ -29,14 +29,29 @@ def calibrate(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_a_table_is_learnt_from_a_directory_of_frames(tmp_path: Path) -> None:
-    """The same frames, written by a camera, give the same table as the simulated camera's own."""
+    """The same frames, written by a camera, give the same table as the simulated camera's own.
+
+    `calibrate` alone is the older form of `calibrate skirt`.
+    """
     camera = SimulatedCamera(load_camera_model(CAMERA), conditions("realistic"), np.random.default_rng(5))
     for number, frame in enumerate(calibration_frames(camera, "green", (0.2, 0.25, 0.3, 0.4, 0.5))):
         (tmp_path / f"{number}.rgb565").write_bytes(frame.data)
     done = calibrate("--frames", str(tmp_path), "--out", str(tmp_path / "a.npz"))
     assert done.returncode == 0, done.stderr
     assert "5 frames" in done.stdout
-    done = calibrate("--simulated", "--seed", "5", "--out", str(tmp_path / "b.npz"))
+    done = robot_agent(
+        "calibrate",
+        "skirt",
+        "--camera",
+        str(CAMERA),
+        "--skirt",
+        "green",
+        "--simulated",
+        "--seed",
+        "5",
+        "--out",
+        str(tmp_path / "b.npz"),
+    )
     assert done.returncode == 0, done.stderr
     one, other = load_colour_table(tmp_path / "a.npz"), load_colour_table(tmp_path / "b.npz")
     assert one.skirt == other.skirt == "green"
@@ -64,7 +79,7 @@ def test_frames_that_cannot_be_used_are_refused(files: dict[str, bytes], reason:
 def test_frames_or_simulation_must_be_said(tmp_path: Path) -> None:
     done = calibrate("--out", str(tmp_path / "new.npz"))
     assert done.returncode == 2
-    assert "robot-agent calibrate --help" in done.stderr
+    assert "robot-agent calibrate skirt --help" in done.stderr
 
 
 def test_copies_are_collected_with_how_they_were_made(tmp_path: Path) -> None:
