@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +12,16 @@ from robot_agent.vision.camera_model import CameraModel, load_camera_model
 from robot_agent.vision.colour_calibration import learn_colour_table
 from robot_agent.vision.colour_table import SKIRT
 from robot_agent.vision.frames import PIXEL_FORMATS, Frame
+from swarm.clock import unix_clock
 from swarm.errors import UserError
 from swarm.runtime.process import OneLineParser
 
 CHANNELS = ("red", "green", "blue")
+LIVE_FRAMES = 10
+"""Enough for a skirt in one light."""
+LIVE_TICK_S = 0.1
+LIVE_TICKS = 50
+"""Five seconds, in which even a slow camera gives some frames."""
 MOST_FRAMES = 100
 """More add time and no colours: a skirt in one light is learnt from a few."""
 
@@ -24,6 +31,8 @@ def calibrate_skirt(arguments: argparse.Namespace) -> None:
     model = load_camera_model(arguments.camera)
     if arguments.simulated:
         frames = _simulated(model, arguments.skirt, arguments.light, arguments.seed)
+    elif arguments.live:
+        frames = live_frames(arguments.live, model)
     else:
         frames = read_frames(arguments.frames, model)
     table = learn_colour_table(frames, model, arguments.skirt)
@@ -33,6 +42,19 @@ def calibrate_skirt(arguments: argparse.Namespace) -> None:
         f"wrote {arguments.out}: {len(frames)} frames, {100 * share:.1f} % of all colours are the skirt's, "
         f"edges are measured in {CHANNELS[table.edge_channel]}"
     )
+
+
+def live_frames(camera: str, model: CameraModel) -> list[Frame]:
+    """Frames of a camera such as /dev/video0, of the model's size; UserError if it gives none."""
+    from robot_agent.drivers.cameras.choice import frames_of
+    from robot_agent.drivers.cameras.fitted import fitted
+
+    take = frames_of(camera, None)
+    taken = (take() for _ in islice(unix_clock().ticks(LIVE_TICK_S), LIVE_TICKS))
+    frames = list(islice((fitted(frame, model) for frame in taken if frame), LIVE_FRAMES))
+    if not frames:
+        raise UserError(f"{camera}: no frame in {LIVE_TICK_S * LIVE_TICKS:g} s: is the camera plugged in?")
+    return frames
 
 
 def read_frames(directory: Path, model: CameraModel) -> list[Frame]:
@@ -71,6 +93,7 @@ def calibrate_skirt_parser() -> OneLineParser:
     parser.add_argument("--skirt", required=True, metavar="NAME", help="what to call the colour")
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("--frames", type=Path, metavar="DIR", help="raw frames: *.rgb565 or *.yuyv")
+    source.add_argument("--live", default="", metavar="CAMERA", help="/dev/videoN, or a video of the skirt")
     source.add_argument("--simulated", action="store_true", help="frames of the simulated camera")
     parser.add_argument("--light", default="realistic", help="of the simulated camera (%(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="of the simulated camera (%(default)s)")

@@ -185,7 +185,7 @@ class CameraSettings:
     calibration: str = ""
     """A calibration file (see deploy/cameras); the simulated camera has one built in."""
     colours: str = ""
-    """A colour table made by `robot-agent calibrate`; the simulated camera learns one at the start."""
+    """A colour table made by `robot-agent calibrate skirt`; the simulated camera learns one at the start."""
     conditions: str = "realistic"
     """Light of the simulated camera: realistic, hard, dark or clean."""
 
