@@ -7,9 +7,10 @@ import json
 import math
 from collections.abc import Generator, Sequence
 
-from robot_agent.addresses import add_address_argument, addresses
+from robot_agent.addresses import addresses
 from robot_agent.assembly import Assembly, Place
 from robot_agent.commands.node_steps import run_steps
+from robot_agent.commands.robot_arguments import add_robot_arguments, require_robot
 from robot_agent.drivers.interfaces import Driver, DriverParts
 from robot_agent.drivers.reflex import with_reflex
 from robot_agent.drivers.registry import make_driver
@@ -21,13 +22,13 @@ from robot_agent.imitation.replication import Arrival, Command, Drive, Turn, rep
 from robot_agent.navigation.located_robot import Fixes, LocatedRobot
 from robot_agent.navigation.motion import Motion, MotionSettings
 from robot_agent.navigation.pose_estimator import PoseEstimator
-from swarm.errors import RunFailedError, UserError, nearest
+from swarm.config.experiment import RobotSettings
+from swarm.errors import RunFailedError, UserError
 from swarm.geometry import Pose
 from swarm.messages import topics
 from swarm.runtime.node import Node
 from swarm.runtime.process import (
     OneLineParser,
-    add_common_arguments,
     joined,
     leave_on_signals,
     load_experiment,
@@ -40,13 +41,10 @@ Steps = Generator[None, int, dict[str, object]]
 def imitate(arguments: argparse.Namespace) -> None:
     """Watch and drive, or with a pattern drive only; say how it came out."""
     experiment = load_experiment(arguments)
-    known = [robot.id for robot in experiment.robot]
-    if arguments.robot not in known:
-        cure = nearest(arguments.robot, known)
-        raise UserError(f"--robot {arguments.robot!r} is not in the experiment; {cure}")
+    require_robot(arguments, experiment)
     commands = parsed_pattern(arguments.pattern)
-    if not commands and not experiment.robot_named(arguments.robot).watches:
-        raise UserError(f"robot {arguments.robot!r} watches nobody: set `watches`, or give it a --pattern")
+    if not commands:
+        _require_sight(experiment.robot_named(arguments.robot))
     leave_on_signals()
     with joined(arguments, "imitation", [arguments.robot], experiment.simulation.tick_s) as node:
         place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
@@ -64,6 +62,17 @@ def imitate(arguments: argparse.Namespace) -> None:
         finally:
             driver.body.close()
     print(json.dumps(report) if arguments.json else _text(report))
+
+
+def _require_sight(robot: RobotSettings) -> None:
+    """UserError if the robot has nobody to watch, or a camera that nobody here shows anything."""
+    if not robot.watches:
+        raise UserError(f"robot {robot.id!r} watches nobody: set `watches`, or give it a --pattern")
+    if robot.driver == "sim":
+        raise UserError(
+            f"robot {robot.id!r} is simulated: its camera is shown something in visits of a run only; "
+            "give it a --pattern, or a real or emulated robot's driver"
+        )
 
 
 def fixes_of(node: Node, robot: str) -> Fixes:
@@ -147,9 +156,7 @@ def imitate_parser() -> OneLineParser:
         description="Watches the robot that the experiment names (`watches`), then drives its pattern as "
         "turns and moves, from where it stands. Give it as much room as the pattern takes.",
     )
-    add_common_arguments(parser)
-    add_address_argument(parser)
-    parser.add_argument("--robot", default="", metavar="ID", help="which robot")
+    add_robot_arguments(parser)
     parser.add_argument(
         "--watch-s", type=float, default=30.0, metavar="SECONDS", help="how long (%(default)s)"
     )
@@ -157,5 +164,4 @@ def imitate_parser() -> OneLineParser:
         "--pattern", default="", metavar='"DEG M, ..."', help="drive this for others to see; watch nobody"
     )
     parser.add_argument("--by-wheels", action="store_true", help="without a tracker, by the step counters")
-    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
     return parser

@@ -26,6 +26,12 @@ id = "shows"
 driver = "serial"
 south_west_m = [0.0, 0.0]
 """
+SIMULATED = """\
+[[robot]]
+id = "looks"
+watches = "shows"
+south_west_m = [1.4, 0.0]
+"""
 PATTERN = "0 0.25, 90 0.15, -90 0.1"
 CORNERS = [(0.0, 0.0), (0.25, 0.0), (0.25, 0.15), (0.35, 0.15)]
 
@@ -58,11 +64,12 @@ def test_a_robot_drives_a_pattern_over_its_link_without_a_tracker(tmp_path: Path
     [
         (("--robot", "show"), "--robot 'show' is not in the experiment"),
         (("--robot", "shows"), "watches nobody"),
+        (("--robot", "looks"), "is simulated: its camera is shown something in visits"),
         (("--robot", "shows", "--pattern", "90"), "say degrees and metres"),
     ],
 )
 def test_what_cannot_be_imitated_is_one_line(options: tuple[str, ...], says: str, tmp_path: Path) -> None:
-    done = imitate(write_experiment(tmp_path, PAIR), *options)
+    done = imitate(write_experiment(tmp_path, PAIR + SIMULATED), *options)
     assert done.returncode == 2
     assert says in done.stderr
     assert len(done.stderr.splitlines()) == 1
