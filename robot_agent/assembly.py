@@ -11,6 +11,7 @@ from robot_agent.activities import Task
 from robot_agent.agent import Agent
 from robot_agent.drivers.interfaces import Driver, DriverParts
 from robot_agent.drivers.kinematics import EpuckGeometry
+from robot_agent.drivers.reflex import with_reflex
 from robot_agent.drivers.registry import make_driver
 from robot_agent.inbox import AgentInbox
 from robot_agent.navigation.motion import Motion, MotionSettings
@@ -61,7 +62,7 @@ class Assembly:
             settings.learning.rest_s,
             _visits(parts, driver, policy, estimator.pose, reporter),
         )
-        return Agent(task, driver.body, estimator, reporter)
+        return Agent(task, with_reflex(driver.body, robot.keep_off_m), estimator, reporter)
 
     def driver_parts(self, name: str) -> DriverParts:
         """What the driver of the robot with this id is made from."""

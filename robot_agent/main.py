@@ -35,11 +35,14 @@ def main() -> None:
 
 TOOLS = {
     ("calibrate", "wheels"): "robot_agent.commands.calibrate_wheels:calibrate_wheels",
-    ("calibrate",): "robot_agent.commands.calibrate:calibrate",
+    ("calibrate", "skirt"): "robot_agent.commands.calibrate_skirt:calibrate_skirt",
+    ("calibrate", "camera"): "robot_agent.commands.calibrate_camera:calibrate_camera",
+    ("calibrate",): "robot_agent.commands.calibrate_skirt:calibrate_skirt",
     ("check",): "robot_agent.commands.check:check",
     ("collect-copies",): "robot_agent.commands.collect_copies:collect",
     ("emulate",): "robot_agent.emulator.command:emulate",
     ("emulate-robots",): "robot_agent.emulator.in_run:emulate_robots",
+    ("imitate",): "robot_agent.commands.imitate:imitate",
 }
 """The first words of the command line, and MODULE:FUNCTION of the tool, whose parser is FUNCTION_parser."""
 
@@ -119,8 +122,9 @@ def _parser() -> OneLineParser:
         prog="robot-agent",
         description="The process on a robot's board: it finds out where the robot is, decides, drives and "
         "learns. Start the swarm server and the tracker bridge first or later: the agent waits for them.",
-        epilog="tools, each with --help: `robot-agent check` tries a real robot; `calibrate` learns the "
-        "colour of a skirt and `calibrate wheels` a robot's dimensions; `emulate` stands in for a robot; "
+        epilog="tools, each with --help: `robot-agent check` tries a real robot; `calibrate skirt`, "
+        "`calibrate camera` and `calibrate wheels` learn a skirt's colour, a lens and a robot's dimensions; "
+        "`emulate` stands in for a robot; `imitate` watches another robot and drives its pattern; "
         "`collect-copies` stores how well simulated robots copy.",
     )
     add_common_arguments(parser)

@@ -4,34 +4,27 @@ from __future__ import annotations
 
 import argparse
 import json
-from contextlib import suppress
 from dataclasses import replace
 
-from robot_agent.addresses import add_address_argument, addresses
+from robot_agent.addresses import addresses
 from robot_agent.assembly import Assembly, Place
+from robot_agent.commands.node_steps import run_steps
+from robot_agent.commands.robot_arguments import add_robot_arguments, require_robot
 from robot_agent.drivers.kinematics import EpuckGeometry
 from robot_agent.drivers.registry import make_driver
 from robot_agent.navigation.wheel_calibration import Leg, WheelCalibration, calibration_of, drive_squares
 from swarm.config.experiment import Experiment
-from swarm.errors import UserError, nearest
 from swarm.geometry import Pose
 from swarm.messages import topics
 from swarm.runtime.node import Node
-from swarm.runtime.process import OneLineParser, add_common_arguments, joined, load_experiment
+from swarm.runtime.process import OneLineParser, joined, load_experiment
 from swarm.signals import leave_on_signals
-
-
-class SquaresDrivenError(Exception):
-    """The squares are driven: what ends the steps of a node."""
 
 
 def calibrate_wheels(arguments: argparse.Namespace) -> None:
     """Drive the squares, and say what belongs into the robot's table."""
     experiment = load_experiment(arguments)
-    known = [robot.id for robot in experiment.robot]
-    if arguments.robot not in known:
-        cure = nearest(arguments.robot, known)
-        raise UserError(f"--robot {arguments.robot!r} is not in the experiment; {cure}")
+    require_robot(arguments, experiment)
     leave_on_signals()
     with joined(arguments, "calibration", [arguments.robot], experiment.simulation.tick_s) as node:
         place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
@@ -48,23 +41,10 @@ def _legs(experiment: Experiment, node: Node, assembly: Assembly, robot: str) ->
     def poses() -> list[Pose]:
         return [Pose(fix.message.x_m, fix.message.y_m, fix.message.theta_rad) for fix in fixes.take()]
 
-    squares = drive_squares(body, poses, nominal, experiment.simulation.tick_s)
-    next(squares)
-    legs: list[Leg] = []
-
-    def step(t_ns: int) -> None:
-        try:
-            squares.send(t_ns)
-        except StopIteration as driven:
-            legs.extend(driven.value)
-            raise SquaresDrivenError from driven
-
     try:
-        with suppress(SquaresDrivenError):
-            node.run(step)
+        return run_steps(node, drive_squares(body, poses, nominal, experiment.simulation.tick_s))
     finally:
         body.close()
-    return legs
 
 
 def _text(calibration: WheelCalibration) -> str:
@@ -82,8 +62,5 @@ def calibrate_wheels_parser() -> OneLineParser:
         description="Drives a robot in two squares of 25 cm, one each way, under the running tracker, and "
         "says its wheels' diameter and base. Give it a square metre.",
     )
-    add_common_arguments(parser)
-    add_address_argument(parser)
-    parser.add_argument("--robot", default="", metavar="ID", help="which robot")
-    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    add_robot_arguments(parser)
     return parser

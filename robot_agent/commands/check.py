@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from itertools import islice
 
 from robot_agent.commands.preflight import Finding, Verdict, preflight
+from robot_agent.drivers.epuck_body import EpuckBody
 from robot_agent.drivers.epuck_driver import KINDS, opened_body
 from robot_agent.drivers.kinematics import EpuckGeometry
 from swarm.clock import NS_PER_S, unix_clock
@@ -55,10 +56,25 @@ def _findings(arguments: argparse.Namespace) -> Iterator[Finding]:
             return
         yield Finding("robot", Verdict.GOOD, f"{identity}, selector {body.selector}")
         yield from preflight(body, unix_clock().ticks(TICK_S), moves=not arguments.stand)
+        if arguments.camera or KINDS[arguments.link].has_camera:
+            yield from _camera(body, arguments.camera)
     finally:
         body.close()
     if arguments.robot:
         yield from _pose(arguments.robot, arguments.connect)
+
+
+def _camera(body: EpuckBody, name: str) -> Iterator[Finding]:
+    """What it takes to look at pictures is loaded here and not before."""
+    from robot_agent.commands.camera_check import camera_findings
+    from robot_agent.drivers.cameras.choice import frames_of
+
+    def ticks() -> Iterator[int]:
+        for t_ns in unix_clock().ticks(TICK_S):
+            body.wheel_steps(t_ns)
+            yield t_ns
+
+    yield from camera_findings(frames_of(name, body.take_picture), ticks())
 
 
 def _passed_over(name: str, text: str) -> None:
@@ -94,6 +110,9 @@ def check_parser() -> OneLineParser:
     parser.add_argument("link", choices=tuple(KINDS), help="how the robot is reached")
     parser.add_argument("address", nargs="?", default="", help="where (see robots.md)")
     parser.add_argument("--stand", action="store_true", help="do not turn the wheels")
+    parser.add_argument(
+        "--camera", default="", metavar="NAME", help="another camera than that on the link: /dev/videoN"
+    )
     parser.add_argument("--robot", default="", metavar="ID", help="look for its pose from the tracker too")
     parser.add_argument("--connect", default="tcp/127.0.0.1:7447", metavar="tcp/HOST:PORT", help="the server")
     parser.add_argument("--json", action="store_true", help="print the findings as one JSON object")

@@ -112,7 +112,7 @@ class Asercom:
             "u": lambda: bytes(6),
             "b": lambda: struct.pack("<H", self._battery(t_ns)),
             "M": lambda: bytes(10 if self._model == "epuck1" else 8),
-            "I": self._image,
+            "I": lambda: self._image(t_ns),
         }
         if command == "\x08" and self._model == "epuck2":
             return sensor_block(robot, t_ns)
@@ -123,11 +123,10 @@ class Asercom:
         volts = self._robot.battery_v(t_ns)
         return battery_raw(volts) if self._model == "epuck2" else int(volts > 3.4)
 
-    def _image(self) -> bytes:
-        """Three header bytes, then the pixels, high byte first: a grey ramp."""
+    def _image(self, t_ns: int) -> bytes:
+        """Three header bytes, then the pixels, high byte first."""
         side = IMAGE_SIDE
-        ramp = np.arange(side * side, dtype=">u2")
-        return bytes((1, side, side)) + ramp.tobytes()
+        return bytes((1, side, side)) + self._robot.look(side, side, t_ns)
 
     def _actuators(self, arguments: bytes, t_ns: int) -> None:
         flags, left, right = struct.unpack_from("<Bhh", arguments)

@@ -96,8 +96,7 @@ class Esp32:
     def _reply(self, t_ns: int) -> bytes:
         reply = b""
         if self._request & 1:
-            rows = np.arange(IMAGE_HEIGHT * IMAGE_WIDTH, dtype=np.uint32).astype(">u2")
-            reply += b"\x01" + rows.tobytes()
+            reply += b"\x01" + self._robot.look(IMAGE_WIDTH, IMAGE_HEIGHT, t_ns)
         if self._request & 2:
             reply += b"\x02" + sensor_block(self._robot, t_ns) + b"\x00"
         return reply or b"\x03"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from contextlib import ExitStack
 from functools import partial
 
@@ -18,6 +19,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.runtime.node import Node
 from swarm.runtime.process import OneLineParser, add_common_arguments, joined, load_experiment
+from swarm.runtime.subscription import Subscription
 from swarm.signals import leave_on_signals
 
 
@@ -37,7 +39,10 @@ def emulate_robots(arguments: argparse.Namespace) -> None:
             )
             for robot, address in places.items()
         ]
-        node.run(partial(_step, robots))
+        truths: dict[str, Pose] = {}
+        for robot in robots:
+            robot.see(experiment, truths, arguments.trial)
+        node.run(partial(_step, robots, node.subscribe(topics.TRUTH), truths))
 
 
 def emulation_of(
@@ -66,6 +71,16 @@ class EmulatedInRun:
         self._name = name
         self._carries = node.subscribe(topics.CARRY, name)
 
+    def see(self, experiment: Experiment, truths: Mapping[str, Pose], trial: int) -> None:
+        """Give a robot that watches another something to see; rendering is loaded for nobody else."""
+        settings, robot = experiment.robot_named(self._name), self._emulation.robot
+        if not settings.watches:
+            return
+        from robot_agent.emulator.camera import rendered_look
+
+        rng = experiment.generator(settings, trial, "camera")
+        robot.look = rendered_look(experiment, settings, robot.truth, truths, rng)
+
     def step(self) -> None:
         emulation = self._emulation
         with emulation.lock:
@@ -78,7 +93,15 @@ class EmulatedInRun:
         self._node.publish(topics.TRUTH, message, self._name)
 
 
-def _step(robots: list[EmulatedInRun], t_ns: int) -> None:  # noqa: ARG001
+def _step(
+    robots: list[EmulatedInRun],
+    told: Subscription[pb.Truth],
+    truths: dict[str, Pose],
+    t_ns: int,  # noqa: ARG001
+) -> None:
+    for received in told.take():
+        truth = received.message
+        truths[received.robot] = Pose(truth.x_m, truth.y_m, truth.theta_rad)
     for robot in robots:
         robot.step()
 

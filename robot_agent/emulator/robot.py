@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable
 
 import numpy as np
 
 from robot_agent.drivers.kinematics import STOPPED, WheelSpeeds
 from robot_agent.drivers.motors import StepperMotors
+from robot_agent.drivers.proximity import echo
 from robot_agent.drivers.sim.body import SimulatedBody
 from robot_agent.emulator.faults import Faults
 from swarm.clock import NS_PER_S
@@ -16,9 +18,6 @@ from swarm.geometry import Compartment, Pose
 
 PROXIMITY_ANGLES_RAD = tuple(math.radians(angle) for angle in (-17, -46, -90, -151, 151, 90, 46, 17))
 """Sensors ps0 to ps7 from the front, counter-clockwise (lpuck's table of infra-red poses)."""
-PROXIMITY_M = (0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06)
-PROXIMITY_RAW = (4095.0, 2133.0, 1466.0, 601.0, 384.0, 235.0, 158.0, 120.0, 67.0)
-"""Response of a sensor to a wall at these distances (epuck_ros2, INFRARED_TABLE); 67 is far away."""
 AMBIENT_RAW = 3200
 """Ambient light of an ordinary room: any plausible number serves."""
 FULL_BATTERY_V = 4.1
@@ -27,6 +26,15 @@ REMOTE_SPEED = 400
 REMOTE_PERIOD_NS = NS_PER_S // 10
 SPEEDS_REMEMBERED = 10_000
 """Changes of speed kept for whoever measures when the wheels stopped: hours of driving."""
+
+
+Look = Callable[[int, int, int], bytes]
+"""What a camera of this width and height shows at a time: RGB565, high byte first."""
+
+
+def grey_ramp(width: int, height: int, t_ns: int) -> bytes:  # noqa: ARG001
+    """An image of nothing."""
+    return np.arange(width * height, dtype=np.uint32).astype(">u2").tobytes()
 
 
 class EmulatedRobot:
@@ -45,6 +53,8 @@ class EmulatedRobot:
     ) -> None:
         self.faults = faults
         self.selector = selector
+        self.look: Look = grey_ramp
+        """What stands before its camera."""
         self.lights = 0
         """Bits 0 to 7 the ring, 8 the body, 9 the front."""
         self.commanded = (0, 0)
@@ -109,8 +119,7 @@ class EmulatedRobot:
     def _echo(self, pose: Pose, angle_rad: float) -> int:
         heading_rad = pose.theta_rad + angle_rad
         reach_m = _free_m(self._walls, pose, math.cos(heading_rad), math.sin(heading_rad))
-        distance_m = reach_m - self._body.radius_m
-        return round(float(np.interp(distance_m, PROXIMITY_M, PROXIMITY_RAW)))
+        return echo(reach_m - self._body.radius_m)
 
     def _advance(self, t_ns: int) -> int:
         """Let the TV remote do what it does up to now."""

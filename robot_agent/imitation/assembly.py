@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from robot_agent.drivers.interfaces import Driver, DriverParts
+from robot_agent.drivers.interfaces import Camera, Driver, DriverParts
 from robot_agent.drivers.sim.camera import BUILT_IN_MODEL, calibration_frames_of
 from robot_agent.imitation.visit import BeginVisit, Eyes, Visit
 from robot_agent.navigation.pose_estimator import PoseAt
@@ -28,16 +28,14 @@ def visits_of(
 ) -> BeginVisit:
     """What makes a visit of an order, for a learner that watches the robot named in its settings."""
     experiment = parts.experiment
-    settings, demonstrator = experiment.visits, experiment.robot_named(parts.robot.watches)
-    profile = MEASUREMENTS[settings.profile]
-    model = _model(experiment).scaled(profile.width, profile.height)
-    table = _colours(experiment, model, demonstrator.skirt, parts.generator("calibration"))
+    demonstrator = experiment.robot_named(parts.robot.watches)
+    camera, detector = sight_of(parts, driver)
     watched = experiment.compartment(demonstrator)
     eyes = Eyes(
-        driver.camera(model),
-        Detector(settings.profile, model, table),
+        camera,
+        detector,
         pose_at,
-        settings,
+        experiment.visits,
         experiment.arena.cell_m,
         watched.centre(watched.grid.start),
         parts.generator("window"),
@@ -48,6 +46,17 @@ def visits_of(
         return Visit(order, eyes, parts.geometry, reporter)
 
     return begin
+
+
+def sight_of(parts: DriverParts, driver: Driver) -> tuple[Camera, Detector]:
+    """The robot's camera, and a detector trained on the skirt of the robot that it watches."""
+    experiment = parts.experiment
+    profile = experiment.visits.profile
+    size = MEASUREMENTS[profile]
+    model = _model(experiment).scaled(size.width, size.height)
+    skirt = experiment.robot_named(parts.robot.watches).skirt
+    table = _colours(experiment, model, skirt, parts.generator("calibration"))
+    return driver.camera(model), Detector(profile, model, table)
 
 
 def _model(experiment: Experiment) -> CameraModel:

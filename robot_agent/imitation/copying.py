@@ -79,7 +79,7 @@ def copy_moves(
             f"{len(positions)} positions are more than {MOST_POSITIONS}: observe for a shorter time"
         )
     seen = without_outliers(plausible_trajectory(positions))
-    if lost := _lost(len(seen), expected_frames):
+    if lost := why_lost(len(seen), expected_frames):
         return NoCopy(lost)
     observed = find_stops(smooth(seen), cell_m)
     shown = longest_demonstration(observed, cell_m, start_m)
@@ -92,7 +92,8 @@ def copy_moves(
     return copied if copied.moves else NoCopy("the demonstrator moved, but by less than a cell")
 
 
-def _lost(seen: int, expected_frames: int) -> str | None:
+def why_lost(seen: int, expected_frames: int) -> str | None:
+    """What is said when the demonstrator was seen in too few frames; None if it was seen in enough."""
     if expected_frames < 1:
         return "no frames were taken"
     if seen == 0:

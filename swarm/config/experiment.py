@@ -187,7 +187,7 @@ class CameraSettings:
     calibration: str = ""
     """A calibration file (see deploy/cameras); the simulated camera has one built in."""
     colours: str = ""
-    """A colour table made by `robot-agent calibrate`; the simulated camera learns one at the start."""
+    """A colour table made by `robot-agent calibrate skirt`; the simulated camera learns one at the start."""
     conditions: str = "realistic"
     """Light of the simulated camera: realistic, hard, dark or clean."""
 
@@ -222,6 +222,8 @@ class RobotSettings:
     """Of a real robot's wheels, as calibrated; 1000 steps are a turn."""
     wheel_base_m: Annotated[float, Between(0.04, 0.07)] = 0.053
     """Between a real robot's wheels, as calibrated; published values go from 52 to 57 mm."""
+    keep_off_m: Annotated[float, Between(0, 0.05)] = 0.0
+    """A real robot drives no further towards what is nearer than this (the obstacle reflex); 0: it does."""
     camera: str = ""
     """A real robot's camera: that on its link if empty, /dev/videoN, a folder of pictures, or a video."""
     role: Role = Role.LEARNER

@@ -19,10 +19,11 @@ def camera_named(
 
     UserError if there is none.
     """
-    return FittedCamera(_source(name, on_link), model, speed, say)
+    return FittedCamera(frames_of(name, on_link), model, speed, say)
 
 
-def _source(name: str, on_link: TakeFrame | None) -> TakeFrame:
+def frames_of(name: str, on_link: TakeFrame | None) -> TakeFrame:
+    """The frames of a camera as they come, of whatever size."""
     if name.startswith("/dev/"):
         return v4l2_frames(name)
     if name:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from robot_agent.drivers.epuck_driver import KINDS
 from robot_agent.emulator.emulation import Emulation, RobotToEmulate, default_address
 from robot_agent.emulator.faults import Faults
 from tests.support.emulated_robot import HALL, LINKS, MIDDLE
@@ -50,7 +51,7 @@ def assert_passes(link: str, model: str, tmp_path: Path) -> None:
     with served(link, model, tmp_path) as address:
         code, findings, said = checked(link, address)
     assert code == 0, said
-    assert len(findings) == 9
+    assert len(findings) == 9 + 2 * KINDS[link].has_camera
     assert not [finding for finding in findings.values() if finding["verdict"] == "bad"]
     assert "steps" in findings["left wheel"]["found"]
 
@@ -60,10 +61,11 @@ def test_what_is_wrong_is_named_with_its_cure(tmp_path: Path) -> None:
     with served("serial", "epuck2", tmp_path, faults) as address:
         code, findings, said = checked("serial", address, "--stand")
     assert code == 1
+    assert "frames/s" in findings["camera"]["found"]
     assert findings["battery"]["verdict"] == "bad"
     assert findings["battery"]["cure"] == "charge the robot"
     assert findings["link"]["verdict"] == "bad"
-    assert said.strip() == "failed: 2 of 4 checks: link, battery"
+    assert said.strip() == "failed: 2 of 6 checks: link, battery"
 
 
 def test_a_robot_that_is_not_there_is_one_line(tmp_path: Path) -> None:

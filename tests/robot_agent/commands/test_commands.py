@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -13,6 +14,7 @@ from robot_agent.drivers.sim.rendering.camera import SimulatedCamera, calibratio
 from robot_agent.drivers.sim.rendering.conditions import conditions
 from robot_agent.vision.camera_model import load_camera_model
 from robot_agent.vision.colour_table import load_colour_table
+from robot_agent.vision.pixels import frame_pixels
 from swarm.surrogate.copies import load_copies
 from tests.support.swarm_runs import ROOT
 
@@ -29,18 +31,44 @@ def calibrate(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_a_table_is_learnt_from_a_directory_of_frames(tmp_path: Path) -> None:
-    """The same frames, written by a camera, give the same table as the simulated camera's own."""
+    """The same frames, written by a camera, give the same table as the simulated camera's own.
+
+    `calibrate` alone is the older form of `calibrate skirt`.
+    """
     camera = SimulatedCamera(load_camera_model(CAMERA), conditions("realistic"), np.random.default_rng(5))
     for number, frame in enumerate(calibration_frames(camera, "green", (0.2, 0.25, 0.3, 0.4, 0.5))):
         (tmp_path / f"{number}.rgb565").write_bytes(frame.data)
     done = calibrate("--frames", str(tmp_path), "--out", str(tmp_path / "a.npz"))
     assert done.returncode == 0, done.stderr
     assert "5 frames" in done.stdout
-    done = calibrate("--simulated", "--seed", "5", "--out", str(tmp_path / "b.npz"))
+    done = robot_agent(
+        "calibrate",
+        "skirt",
+        "--camera",
+        str(CAMERA),
+        "--skirt",
+        "green",
+        "--simulated",
+        "--seed",
+        "5",
+        "--out",
+        str(tmp_path / "b.npz"),
+    )
     assert done.returncode == 0, done.stderr
     one, other = load_colour_table(tmp_path / "a.npz"), load_colour_table(tmp_path / "b.npz")
     assert one.skirt == other.skirt == "green"
     assert np.array_equal(one.kinds, other.kinds)
+
+
+def test_a_table_is_learnt_from_a_camera_that_runs(tmp_path: Path) -> None:
+    """Pictures in a folder stand in for the camera."""
+    camera = SimulatedCamera(load_camera_model(CAMERA), conditions("realistic"), np.random.default_rng(5))
+    for number, frame in enumerate(calibration_frames(camera, "green", (0.2, 0.3, 0.4))):
+        cv2.imwrite(str(tmp_path / f"{number}.png"), cv2.cvtColor(frame_pixels(frame), cv2.COLOR_RGB2BGR))
+    done = calibrate("--live", str(tmp_path), "--out", str(tmp_path / "live.npz"))
+    assert done.returncode == 0, done.stderr
+    assert "3 frames" in done.stdout
+    assert load_colour_table(tmp_path / "live.npz").skirt == "green"
 
 
 @pytest.mark.parametrize(
@@ -64,7 +92,7 @@ def test_frames_that_cannot_be_used_are_refused(files: dict[str, bytes], reason:
 def test_frames_or_simulation_must_be_said(tmp_path: Path) -> None:
     done = calibrate("--out", str(tmp_path / "new.npz"))
     assert done.returncode == 2
-    assert "robot-agent calibrate --help" in done.stderr
+    assert "robot-agent calibrate skirt --help" in done.stderr
 
 
 def test_copies_are_collected_with_how_they_were_made(tmp_path: Path) -> None:
