@@ -9,7 +9,8 @@ from typing import Any
 
 from swarm.errors import UserError
 
-VERSION = 1
+VERSION = 2
+"""Of the file's content; 1 kept the memory and the counters in other places."""
 
 
 class Checkpoint:

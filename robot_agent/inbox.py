@@ -11,6 +11,7 @@ from swarm.messages import topics
 from swarm.runtime.node import Node
 
 CONDUCTOR_SILENT_S = 5.0
+"""Chosen: five of the run states that come once a second, so that a lost message or two stop nobody."""
 
 
 class AgentInbox:

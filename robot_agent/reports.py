@@ -1,55 +1,117 @@
-"""What the agent says besides its moves: commands as sent, status, events."""
+"""All that a robot says, each message under the robot's own key."""
 
 from __future__ import annotations
 
+from typing import TypeVar
+
+from google.protobuf.message import Message
+
 from robot_agent.drivers.kinematics import WheelSpeeds
-from robot_agent.policies.policy import Policy, Publish
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
+from swarm.learning.learner import MoveRecord, ReplayRecord
+from swarm.learning.memory import ObservedPath
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.messages.topics import Topic
+from swarm.runtime.node import Node
+
+M = TypeVar("M", bound=Message)
 
 STATUS_PERIOD_NS = NS_PER_S
+"""The rate of status messages in docs/keys.md."""
 LONGEST_AGE_S = 1e5
+"""Above a day, longer than any run: a pose that never came, in a message that holds finite numbers only."""
 
 
 class Reporter:
-    """Publishes under the robot's own keys."""
+    """Publishes for one robot."""
 
-    def __init__(self, publish: Publish) -> None:
-        self._publish = publish
+    def __init__(self, node: Node, robot: str) -> None:
+        self._node = node
+        self._robot = robot
         self._status_due_ns = 0
 
     def command(self, sent: WheelSpeeds, pose: Pose | None) -> None:
         """Wheel speeds as sent, and the pose that the robot believes (0, 0, 0 before the first fix)."""
         believed = pose or Pose(0.0, 0.0, 0.0)
-        self._publish(
-            topics.COMMAND,
-            pb.Command(
-                left_steps_per_s=sent.left_steps_per_s,
-                right_steps_per_s=sent.right_steps_per_s,
-                x_m=believed.x_m,
-                y_m=believed.y_m,
-                theta_rad=believed.theta_rad,
-            ),
+        message = pb.Command(
+            left_steps_per_s=sent.left_steps_per_s,
+            right_steps_per_s=sent.right_steps_per_s,
+            x_m=believed.x_m,
+            y_m=believed.y_m,
+            theta_rad=believed.theta_rad,
         )
+        self._publish(topics.COMMAND, message)
 
-    def status(self, t_ns: int, activity: str, policy: Policy, pose_age_s: float, bad: int) -> None:
+    def status(
+        self, t_ns: int, activity: str, moves: int, tracks: int, pose_age_s: float, bad_messages: int
+    ) -> None:
         """Once a second; a pose that never came counts as 100,000 s old."""
         if t_ns < self._status_due_ns:
             return
         self._status_due_ns = t_ns + STATUS_PERIOD_NS
-        self._publish(
-            topics.STATUS,
-            pb.Status(
-                activity=activity,
-                moves=policy.moves,
-                tracks=policy.tracks,
-                pose_age_s=min(pose_age_s, LONGEST_AGE_S),
-                bad_messages=bad,
-            ),
+        message = pb.Status(
+            activity=activity,
+            moves=moves,
+            tracks=tracks,
+            pose_age_s=min(pose_age_s, LONGEST_AGE_S),
+            bad_messages=bad_messages,
         )
+        self._publish(topics.STATUS, message)
 
-    def event(self, name: str, text: str, level: pb.Event.Level.ValueType = pb.Event.WARNING) -> None:
+    def warning(self, name: str, text: str) -> None:
         """Something that a person should be able to read in the log."""
-        self._publish(topics.EVENT, pb.Event(level=level, name=name, text=text))
+        event = pb.Event(level=pb.Event.WARNING, name=name, text=text)
+        self._publish(topics.EVENT, event)
+
+    def move(self, move: MoveRecord) -> None:
+        """What came of a move."""
+        made = move.transition
+        message = pb.Move(
+            number=move.number,
+            track=move.track,
+            state=made.state,
+            action=made.action,
+            next_state=made.next_state,
+            reward=move.reward,
+            duration_s=made.duration_s,
+            q_value=move.q_value,
+            q_change=move.q_change,
+            blocked=made.blocked,
+            path=move.path,
+        )
+        self._publish(topics.MOVE, message)
+
+    def replay(self, replay: ReplayRecord) -> None:
+        """How the replay of a path ended."""
+        message = pb.Replay(
+            path=replay.path,
+            moves=replay.moves,
+            outcome=replay.outcome.value,
+            q_change=replay.q_change,
+            ratio=replay.ratio,
+            started_move=replay.started_move,
+        )
+        self._publish(topics.REPLAY, message)
+
+    def best_path(self, move: int, length: int, cap: int) -> None:
+        """The greedy path's length after a move; one that does not arrive counts as `cap`."""
+        self._publish(topics.BEST_PATH, pb.BestPath(move=move, length=length, cap=cap))
+
+    def path(self, number: int, path: ObservedPath, source: str, visit: int) -> None:
+        """A path that entered the memory; `source` is "given" or "camera"."""
+        message = pb.PathRemembered(path=number, moves=path.moves, source=source, visit=visit)
+        self._publish(topics.PATH, message)
+
+    def observation(self, observation: pb.Observation) -> None:
+        """Where a copied path comes from, frame by frame."""
+        self._publish(topics.OBSERVATION, observation)
+
+    def visit(self, number: int, phase: pb.Visit.Phase.ValueType, path: int = 0, reason: str = "") -> None:
+        """How far a visit is; at its end the path that was remembered, or why there is none."""
+        message = pb.Visit(visit=number, phase=phase, path=path, reason=reason)
+        self._publish(topics.VISIT, message)
+
+    def _publish(self, topic: Topic[M], message: M) -> None:
+        self._node.publish(topic, message, self._robot)

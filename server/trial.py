@@ -13,7 +13,7 @@ from server.recording.recorder import Recorder
 from swarm.messages import swarm_pb2 as pb
 
 BATCHES_AFTER_THE_END = 3
-"""So many more, for the robots' last words."""
+"""The end reaches the robots two exchanges later; one more brings their last words."""
 
 
 @dataclass(frozen=True)

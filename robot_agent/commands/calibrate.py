@@ -16,6 +16,7 @@ from swarm.runtime.process import OneLineParser
 
 CHANNELS = ("red", "green", "blue")
 MOST_FRAMES = 100
+"""More add time and no colours: a skirt in one light is learnt from a few."""
 
 
 def calibrate(arguments: argparse.Namespace) -> None:

@@ -13,7 +13,7 @@ from robot_agent.offline.observation_session import (
     observed_demonstrations,
     offline_experiment,
 )
-from swarm.config.experiment import Watching
+from swarm.config.experiment import CopyProfile
 from swarm.errors import UserError
 from swarm.geometry import Move
 from swarm.runtime.process import OneLineParser
@@ -33,7 +33,7 @@ def collect(arguments: argparse.Namespace) -> None:
 
 
 def _pairs(arguments: argparse.Namespace) -> Iterator[CopyPair]:
-    experiment = offline_experiment(Watching(arguments.profile), arguments.light)
+    experiment = offline_experiment(CopyProfile(arguments.profile), arguments.light)
     for kind in KINDS:
         many = observed_demonstrations(experiment, kind, arguments.demonstrations, arguments.seed)
         for number, observed in enumerate(many, 1):
@@ -68,7 +68,7 @@ def collect_parser() -> OneLineParser:
     parser.add_argument(
         "--demonstrations", type=int, default=300, metavar="N", help="of each kind (%(default)s)"
     )
-    profiles = [profile.value for profile in Watching]
+    profiles = [profile.value for profile in CopyProfile]
     parser.add_argument("--profile", choices=profiles, default="best", help="how it copies (%(default)s)")
     parser.add_argument("--light", default="realistic", help="realistic, hard, dark or clean (%(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="(%(default)s)")

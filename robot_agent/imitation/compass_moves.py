@@ -15,24 +15,29 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_agent.imitation.positions import Floats
 from robot_agent.imitation.segments import Vertex
+from robot_agent.imitation.trajectory import Floats
 from swarm.geometry import MOVES, Move
 
 MOST_CELLS = 9
+"""The longest straight way in the paper's grid of 10 x 10 cells."""
 STOP_SD_M = 0.008
-"""How far from a cell's centre the demonstrator stops."""
+"""How far from a cell's centre the demonstrator stops. Chosen above the 2 to 3 mm of docs/results.md:
+other robots may be worse."""
 DRIFT_SD_M = 0.011
-"""How much the lattice seems to move from corner to corner: enough to bear an own heading 5 degrees wrong."""
+"""How much the lattice seems to move from corner to corner: enough to bear an own heading 5 degrees wrong
+(docs/copying.md has what less and more of it cost)."""
 PASSED_CHI2 = 1.0
-"""Price of each cell that was passed without a stop."""
+"""Price of each cell that was passed without a stop: the prior of a prototype's best reader."""
 STAY_CHI2 = 2.0
-"""Price of a drive that led nowhere."""
+"""Price of a drive that led nowhere. Chosen, as the two below: the rarer the dearer; the bars of the
+copying benchmark (tests/benchmarks/copying.py) hold them together."""
 SKIP_CHI2 = 10.0
 """Price of a stop that was none, such as a slow moment between two cells."""
 BEND_CHI2 = 3.0
 """Price of a corner without a stop; to skip such a corner is free."""
 BEAM = 32
+"""Chosen: bounds the work at 32 x 73 readings a corner; the right one is seldom far from the best."""
 
 HEADINGS = np.append(np.repeat(np.arange(MOVES), MOST_CELLS), 0)
 CELLS = np.append(np.tile(np.arange(1, MOST_CELLS + 1), MOVES), 0)

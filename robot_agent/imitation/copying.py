@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
-from typing import TypeVar
 
 import numpy as np
 
 from robot_agent.imitation.compass_moves import read_moves
-from robot_agent.imitation.demonstration import Place, Stop, demonstration_stops, find_stops, longest_seen
+from robot_agent.imitation.demonstration import Place, find_stops, longest_demonstration, longest_in_sight
 from robot_agent.imitation.line_fitting import fit_segments, snap
-from robot_agent.imitation.positions import ObservedPosition, Trajectory, inliers, plausible_trajectory
+from robot_agent.imitation.outliers import plausible_trajectory, without_outliers
+from robot_agent.imitation.positions import ObservedPosition
 from robot_agent.imitation.segments import Segment, find_vertices, segments_between
-from robot_agent.imitation.smoothing import Smoothed, smooth
+from robot_agent.imitation.smoothing import smooth
+from robot_agent.imitation.trajectory import SmoothedTrajectory, Stop
+from swarm.config.experiment import CopyProfile
 from swarm.geometry import Move
 from swarm.learning.memory import ObservedPath
 
@@ -23,18 +24,8 @@ MOST_POSITIONS = 5_000
 REST_KEPT = 2
 """Positions of the first and the last rest to which lines are fitted: a long rest leaves a cloud of them."""
 MOST_LOST = 0.3
-"""Larger a share of frames without the demonstrator, and nothing is copied."""
-
-Item = TypeVar("Item")
-
-
-class CopyProfile(StrEnum):
-    """How positions become moves."""
-
-    BEST = "best"
-    """Smooth, find the stops, and read the moves that explain all of them together."""
-    PAPER = "paper"
-    """Section 3.2 of the paper: regression line fitting."""
+"""Larger a share of frames without the demonstrator, and nothing is copied. Chosen: a frame or
+two lost in every move still show them all (tests/robot_agent/imitation/test_copying.py loses a quarter)."""
 
 
 @dataclass(frozen=True)
@@ -87,19 +78,17 @@ def copy_moves(
         return NoCopy(
             f"{len(positions)} positions are more than {MOST_POSITIONS}: observe for a shorter time"
         )
-    trajectory = plausible_trajectory(positions)
-    trajectory = trajectory.where(inliers(trajectory))
-    if lost := _lost(len(trajectory), expected_frames):
+    seen = without_outliers(plausible_trajectory(positions))
+    if lost := _lost(len(seen), expected_frames):
         return NoCopy(lost)
-    smoothed = smooth(trajectory)
-    stops = find_stops(smoothed, cell_m)
-    shown = demonstration_stops(smoothed, stops, cell_m, start_m)
-    if len(shown) < 2:
-        return NoCopy(_no_demonstration(stops))
-    shown = list(longest_seen(smoothed, shown))
-    if len(shown) < 2:
+    observed = find_stops(smooth(seen), cell_m)
+    shown = longest_demonstration(observed, cell_m, start_m)
+    if len(shown.stops) < 2:
+        return NoCopy(_no_demonstration(observed.stops))
+    shown = longest_in_sight(shown)
+    if len(shown.stops) < 2:
         return NoCopy("the demonstrator was out of sight for so long that moves may have been missed")
-    copied = _copy(trajectory, smoothed, shown, profile, cell_m)
+    copied = _READERS[profile](shown, cell_m)
     return copied if copied.moves else NoCopy("the demonstrator moved, but by less than a cell")
 
 
@@ -121,36 +110,26 @@ def _no_demonstration(stops: Sequence[Stop]) -> str:
     return "the demonstrator only drove back to its start"
 
 
-def _copy(
-    trajectory: Trajectory, smoothed: Smoothed, shown: Sequence[Stop], profile: CopyProfile, cell_m: float
-) -> Copy:
-    if profile is CopyProfile.PAPER:
-        return _copy_by_lines(trajectory, shown, cell_m)
-    return _copy_by_stops(trajectory, smoothed, shown, cell_m)
-
-
-def _copy_by_stops(trajectory: Trajectory, smoothed: Smoothed, shown: Sequence[Stop], cell_m: float) -> Copy:
-    vertices = find_vertices(trajectory, smoothed, shown, cell_m)
+def _copy_by_stops(shown: SmoothedTrajectory, cell_m: float) -> Copy:
+    """The moves that explain all the stops together."""
+    vertices = find_vertices(shown, cell_m)
     stretches = read_moves(vertices, cell_m)
     moves = [
         CopiedMove(stretch.move, stretch.confidence) for stretch in stretches for _ in range(stretch.cells)
     ]
     corners = [vertices[0], *(vertices[stretch.vertex] for stretch in stretches)]
-    covariance_m2 = smoothed.covariance[:, :2, :2]
-    smoothed_positions = Trajectory(trajectory.t_ns, smoothed.xy_m, covariance_m2).positions()
-    return Copy(tuple(moves), segments_between(corners), smoothed_positions)
+    return Copy(tuple(moves), segments_between(corners), shown.positions())
 
 
-def _copy_by_lines(trajectory: Trajectory, shown: Sequence[Stop], cell_m: float) -> Copy:
-    within = np.zeros(len(trajectory), dtype=np.bool_)
-    within[max(shown[0].first, shown[0].last - REST_KEPT) : shown[-1].first + REST_KEPT + 1] = True
-    segments = fit_segments(trajectory.where(within), cell_m)
+def _copy_by_lines(shown: SmoothedTrajectory, cell_m: float) -> Copy:
+    """Section 3.2 of the paper: regression line fitting, to the positions as they were seen."""
+    first, last = shown.stops[0], shown.stops[-1]
+    within = np.zeros(len(shown), dtype=np.bool_)
+    within[max(first.first, first.last - REST_KEPT) : last.first + REST_KEPT + 1] = True
+    segments = fit_segments(shown.seen.where(within), cell_m)
     snapped = [snap(segment, cell_m) for segment in segments]
     moves = [CopiedMove(move, 0.0) for move, cells in snapped for _ in range(cells)]
-    return Copy(tuple(moves), segments, trajectory.positions())
+    return Copy(tuple(moves), segments, shown.seen.positions())
 
 
-def choose_window(moves: Sequence[Item], count: int, rng: np.random.Generator) -> tuple[Item, ...]:
-    """`count` consecutive moves at a random place of a longer track; all of a shorter one."""
-    first = int(rng.integers(max(len(moves) - count, 0) + 1))
-    return tuple(moves[first : first + count])
+_READERS = {CopyProfile.BEST: _copy_by_stops, CopyProfile.PAPER: _copy_by_lines}

@@ -11,17 +11,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
-from robot_agent.imitation.positions import Floats, Trajectory
-from robot_agent.imitation.segments import Segment, from_chord
-from swarm.geometry import MOVES, Move, wrap_angle_rad
+from robot_agent.imitation.polyline import from_chord, split
+from robot_agent.imitation.segments import Segment, straight_segments
+from robot_agent.imitation.trajectory import Floats, Trajectory
+from swarm.geometry import MOVES, Move
 
 SPLIT_CELLS = 0.3
 """A part bends if a position is farther from its chord: 3.6 cm in cells of 12 cm."""
 MEDIAN_WINDOW = 5
+"""Bears two bad positions in a row, like the gate before it."""
 MERGE_RAD = math.pi / MOVES
 """Neighbours closer in direction than half the angle between two headings are one line."""
 PARALLEL_RAD = math.pi / 18
@@ -52,9 +55,11 @@ def fit_segments(trajectory: Trajectory, cell_m: float) -> tuple[Segment, ...]:
     """Straight segments between the intersections of the fitted lines."""
     if len(trajectory) < 2:
         return ()
-    ends = split(running_median(trajectory.xy_m), SPLIT_CELLS * cell_m)
-    lines = merge(trajectory.xy_m, [fit_line(trajectory.xy_m, a, b) for a, b in pairwise(ends)])
-    return _segments(trajectory, lines, _corners(trajectory.xy_m, lines))
+    xy_m, t_ns = trajectory.xy_m, trajectory.t_ns
+    ends = split_at_bends(running_median(xy_m), SPLIT_CELLS * cell_m)
+    lines = merge(xy_m, [fit_line(xy_m, first, last) for first, last in pairwise(ends)])
+    spans_ns = [(int(t_ns[line.first]), int(t_ns[line.last])) for line in lines]
+    return straight_segments(_corners(xy_m, lines), spans_ns)
 
 
 def running_median(xy_m: Floats) -> Floats:
@@ -64,18 +69,16 @@ def running_median(xy_m: Floats) -> Floats:
     return medians
 
 
-def split(xy_m: Floats, tolerance_m: float) -> list[int]:
+def split_at_bends(xy_m: Floats, tolerance_m: float) -> list[int]:
     """Ends of the parts: first and last position, and wherever a part bends by more than the tolerance."""
-    ends, waiting = [0], [len(xy_m) - 1]
-    while waiting:
-        first, last = ends[-1], waiting[-1]
-        away_m = np.linalg.norm(from_chord(xy_m[first : last + 1], xy_m[first], xy_m[last]), axis=1)
-        farthest = int(np.argmax(away_m))
-        if away_m[farthest] > tolerance_m:
-            waiting.append(first + farthest)
-        else:
-            ends.append(waiting.pop())
-    return ends
+    return split(0, len(xy_m) - 1, partial(_bend, xy_m, tolerance_m))
+
+
+def _bend(xy_m: Floats, tolerance_m: float, first: int, last: int) -> int | None:
+    """The place that is farthest from a chord, if it is by more than the tolerance."""
+    away_m = np.linalg.norm(from_chord(xy_m[first : last + 1], xy_m[first], xy_m[last]), axis=1)
+    farthest = int(np.argmax(away_m))
+    return first + farthest if away_m[farthest] > tolerance_m else None
 
 
 def fit_line(xy_m: Floats, first: int, last: int) -> Line:
@@ -115,18 +118,6 @@ def _intersection(one: Line, other: Line, near_m: Floats) -> Floats:
 
 def _cross(a: Floats, b: Floats) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
-
-
-def _segments(
-    trajectory: Trajectory, lines: Sequence[Line], corners: Sequence[Floats]
-) -> tuple[Segment, ...]:
-    segments: list[Segment] = []
-    for line, (start, end) in zip(lines, pairwise(corners), strict=True):
-        heading_rad = math.atan2(*(end - start)[::-1])
-        turn_rad = wrap_angle_rad(heading_rad - segments[-1].heading_rad) if segments else 0.0
-        t_start_ns, t_end_ns = int(trajectory.t_ns[line.first]), int(trajectory.t_ns[line.last])
-        segments.append(Segment(turn_rad, math.dist(start, end), heading_rad, t_start_ns, t_end_ns))
-    return tuple(segments)
 
 
 def snap(segment: Segment, cell_m: float) -> tuple[Move, int]:

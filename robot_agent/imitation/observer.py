@@ -15,12 +15,17 @@ from swarm.clock import NS_PER_S
 from swarm.geometry import Pose, wrap_angle_rad
 
 FOLLOW_GAIN_PER_S = 2.0
+"""With the two below it kept every random demonstration in view in a prototype."""
 FOLLOW_DEAD_BAND_RAD = 0.07
+"""4 degrees, a thirteenth of the field of view: a robot that keeps turning blurs what it sees."""
 FASTEST_TURN_RAD_PER_S = 1.2
+"""Above the 0.7 rad/s (41 degrees/s) at which a robot 14 cm away can pass at 0.10 m/s."""
 MOST_REPEATED_FRAMES = 4
 """Noise makes any two frames of a living camera differ."""
 MOST_MISSING_FRAMES = 5
+"""A second at five frames a second; chosen: shorter than a move, so that none is missed unnoticed."""
 PUSHED_M = 0.03
+"""Chosen: thirty times the tracker's noise of 1 mm, and a quarter of a cell."""
 VAGUE_M = 0.09
 """Three quarters of a cell: a detection whose range is less sure does not show whether a move was made."""
 
@@ -153,9 +158,11 @@ def _is_vague(answer: Detection | NotSeen) -> bool:
 
 
 SEARCH_AFTER_NS = NS_PER_S
+"""Chosen: five frames without the demonstrator are more than a glitch, and less than a move."""
 SWEEP_RAD = 0.6
 """To either side of the first heading: with half a field of view, more than the corner opens to."""
 REACHED_RAD = 0.1
+"""Chosen: a little over the dead band, else the robot would stop short of the sweep's end."""
 OUT_OF_IMAGE = (Reason.NOT_SEEN, Reason.CUT_OFF, Reason.UNLIKE)
 """Turning helps against these; it does not against darkness, or something that stands before the skirt."""
 

@@ -6,42 +6,23 @@ the state (x, y, x', y') and white noise in the acceleration.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from robot_agent.imitation.positions import Floats, Trajectory
+from robot_agent.imitation.trajectory import CHI2_GATE, Floats, SmoothedTrajectory, Trajectory
 
 ACCELERATION_NOISE_M2_S3 = 0.025
 """q: 250 cm^2/s^3 follows a robot that starts and stops within a quarter of a second."""
-CHI2_GATE = 25.0
-"""A position farther than this from the prediction is passed over."""
 FIRST_SPEED_SD_M_S = 0.10
-
-_SEEN = np.eye(2, 4)
-
-
-@dataclass(frozen=True)
-class Smoothed:
-    """State estimates at the times of the N detections."""
-
-    t_s: Floats  # [N]
-    xy_m: Floats  # [N, 2]
-    velocity_m_s: Floats  # [N, 2]
-    covariance: Floats  # [N, 4, 4] of (x, y, x', y')
-
-    @property
-    def speed_m_s(self) -> Floats:
-        return np.hypot(self.velocity_m_s[:, 0], self.velocity_m_s[:, 1])
+"""The speed at which robots drive: nothing is known of the first position's velocity but that."""
 
 
-def smooth(trajectory: Trajectory) -> Smoothed:
-    """At least one detection, in the order of time."""
-    t_s = trajectory.t_s
-    steps = [(_transition(dt_s), _process_noise(dt_s)) for dt_s in np.diff(t_s)]
+def smooth(trajectory: Trajectory) -> SmoothedTrajectory:
+    """Of at least one position."""
+    steps = [(_transition(dt_s), _process_noise(dt_s)) for dt_s in np.diff(trajectory.t_s)]
     states, covariances, predictions = _filter(trajectory, steps)
     _smooth_backwards(states, covariances, predictions, steps)
-    return Smoothed(t_s, states[:, :2], states[:, 2:], covariances)
+    covariance_m2 = covariances[:, :2, :2]
+    return SmoothedTrajectory(trajectory.t_ns, states[:, :2], covariance_m2, trajectory, states[:, 2:])
 
 
 Step = tuple[Floats, Floats]

@@ -9,25 +9,26 @@ import numpy as np
 
 from robot_agent.drivers.interfaces import Camera
 from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry, WheelSpeeds
-from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, choose_window, copy_moves
+from robot_agent.imitation.copying import Copy, NoCopy, copy_moves
 from robot_agent.imitation.observer import Watch
 from robot_agent.imitation.provenance import observation_message
 from robot_agent.navigation.pose_estimator import PoseAt
-from robot_agent.policies.policy import Publish
+from robot_agent.reports import Reporter
 from robot_agent.vision.detector import Detector
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import VisitSettings
-from swarm.geometry import Pose
-from swarm.learning.memory import ObservedPath
+from swarm.geometry import Move, Pose
+from swarm.learning.memory import ObservedPath, choose_window
 from swarm.messages import swarm_pb2 as pb
-from swarm.messages import topics
 
 BeginVisit = Callable[[pb.Order], "Visit"]
 """Makes a visit of an order to watch; None in a robot without a camera."""
 
 
 AT_PLACE_M = 0.05
+"""Chosen: a hand does not set a robot down more exactly, and its pose is measured in any case."""
 STANDS_FOR_NS = NS_PER_S
+"""Ten fixes of a tracker at 10 Hz; chosen: enough for the heading to settle after being carried."""
 
 
 @dataclass(frozen=True)
@@ -48,16 +49,16 @@ class Eyes:
 class Visit:
     """One visit, from the order to watch until the robot may be carried back."""
 
-    def __init__(self, order: pb.Order, eyes: Eyes, geometry: EpuckGeometry, publish: Publish) -> None:
+    def __init__(self, order: pb.Order, eyes: Eyes, geometry: EpuckGeometry, reporter: Reporter) -> None:
         self.number = order.visit
         self.done = False
         self._place = Pose(order.x_m, order.y_m, order.theta_rad)
         self._eyes = eyes
         self._geometry = geometry
-        self._publish = publish
+        self._reporter = reporter
         self._watch: Watch | None = None
         self._standing_since_ns: int | None = None
-        self._say(pb.Visit.READY)
+        self._reporter.visit(self.number, pb.Visit.READY)
 
     def step(self, own_pose: Pose | None, t_ns: int) -> WheelSpeeds:
         """Wait for the place, then watch; the wheels only turn the robot in place."""
@@ -87,26 +88,26 @@ class Visit:
             self._standing_since_ns = t_ns
         if self._standing_since_ns is None or t_ns - self._standing_since_ns < STANDS_FOR_NS:
             return None
-        self._say(pb.Visit.WATCHING)
+        self._reporter.visit(self.number, pb.Visit.WATCHING)
         eyes = self._eyes
         duration_s, frames_per_s = eyes.settings.duration_s, eyes.settings.frames_per_s
         return Watch(eyes.camera, eyes.detector, eyes.pose_at, t_ns, duration_s, frames_per_s)
 
     def _finish(self, watch: Watch) -> None:
         copied = self._copied(watch)
-        window: tuple[int, ...] = ()
-        path, reason = 0, ""
-        if isinstance(copied, NoCopy):
-            reason = copied.reason
-        else:
-            moves = choose_window(copied.path().moves, self._eyes.settings.moves, self._eyes.rng)
-            window = tuple(int(move) for move in moves)
+        window = self._window(copied)
         profile = self._eyes.settings.profile.value
-        self._publish(topics.OBSERVATION, observation_message(self.number, profile, watch, copied, window))
-        if not isinstance(copied, NoCopy):
-            path = self._eyes.remember(ObservedPath(moves), self.number)
+        self._reporter.observation(observation_message(self.number, profile, watch, copied, window))
+        path = self._eyes.remember(ObservedPath(window), self.number) if window else 0
+        reason = copied.reason if isinstance(copied, NoCopy) else ""
         self.done = True
-        self._say(pb.Visit.DONE, path, reason)
+        self._reporter.visit(self.number, pb.Visit.DONE, path, reason)
+
+    def _window(self, copied: Copy | NoCopy) -> tuple[Move, ...]:
+        """The moves that will be remembered; a copy has at least one."""
+        if isinstance(copied, NoCopy):
+            return ()
+        return choose_window(copied.path().moves, self._eyes.settings.moves, self._eyes.rng)
 
     def _copied(self, watch: Watch) -> Copy | NoCopy:
         """Nothing is learnt from an observation that was given up."""
@@ -115,7 +116,7 @@ class Visit:
         eyes = self._eyes
         copied = copy_moves(
             watch.positions,
-            CopyProfile(eyes.settings.profile.value),
+            eyes.settings.profile,
             eyes.cell_m,
             watch.expected_frames,
             eyes.start_m,
@@ -124,6 +125,3 @@ class Visit:
         if isinstance(copied, NoCopy) and unseen:
             return NoCopy(f"{copied.reason} (mostly: {unseen})")
         return copied
-
-    def _say(self, phase: pb.Visit.Phase.ValueType, path: int = 0, reason: str = "") -> None:
-        self._publish(topics.VISIT, pb.Visit(visit=self.number, phase=phase, path=path, reason=reason))

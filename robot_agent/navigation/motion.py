@@ -20,9 +20,15 @@ class MotionSettings:
     """How a robot moves. The defaults take 2.2 to 2.5 s for a move between cells of 12 cm."""
 
     drive_speed_m_per_s: float = 0.10
+    """With turning 2.4 s a move, as in the paper's 10 hours for 15,000 moves; 0.129 is the most."""
+
     turn_speed_rad_per_s: float = 3.0
+    """Of the 4.9 that the wheels can: 0.5 s for a right angle."""
+
     drive_acceleration_m_per_s2: float = 1.0
     turn_acceleration_rad_per_s2: float = 30.0
+    """Chosen: full speed within one control period; a gentler start would take longer."""
+
     period_s: float = 0.1
     """Time from one step of the controller to the next."""
 
@@ -40,6 +46,8 @@ class MotionSettings:
     oscillate if the true latency is shorter than the one above."""
 
     heading_gain_per_s: float = 4.0
+    """Chosen: corrects 40 % of an error in a period; not all of it, since commands take effect late."""
+
     hold_heading_within_m: float = 0.03
     """This close to the target its direction is noise: the heading is held."""
 
@@ -50,6 +58,8 @@ class MotionSettings:
     """A leg that ends further than this from its target is approached once more."""
 
     tolerance_rad: float = math.radians(1.5)
+    """Of a turn without a drive; chosen above the heading's error."""
+
     attempts: int = 3
     """After so many approaches of one leg the robot is content with where it stands."""
 

@@ -15,13 +15,16 @@ from robot_agent.navigation.pose_estimator import PoseEstimator
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
 from swarm.geometry import Compartment, Grid, Move, Pose
+from swarm.tracker_noise import measured
 
 FIX_LATE_TICKS = 2
 """As in a run with one tick an exchange: a pose arrives two exchanges after it was true."""
 FIRST_REST_S = (4.0, 4.5)
 """Long enough for an observer that looks the wrong way to find the demonstrator before it moves."""
 REST_S = (1.5, 2.0)
+"""From the experiment file's `rest_s` up: a person or a process may add half a second."""
 MOST_TICKS_A_MOVE = 600
+"""A minute: a move takes 2.4 s, so that a robot that is not there by then never will be."""
 
 
 @dataclass(frozen=True)
@@ -77,12 +80,9 @@ class TrackedRobot:
 
     def _measured(self, t_ns: int) -> tuple[Pose, int] | None:
         """The noisy truth of this tick, or None if the tracker missed it."""
-        tracker, truth = self._tracker, self.body.truth(t_ns)
-        x_noise, y_noise, theta_noise = self._rng.standard_normal(3).tolist()
-        if self._rng.random() < tracker.loss:
-            return None
-        place = truth.x_m + tracker.noise_m * x_noise, truth.y_m + tracker.noise_m * y_noise
-        return Pose(*place, truth.theta_rad + tracker.noise_rad * theta_noise), t_ns
+        noise, loss = self._rng.standard_normal(3).tolist(), self._rng.random()
+        pose = measured(self.body.truth(t_ns), self._tracker, noise, loss)
+        return (pose, t_ns) if pose else None
 
 
 def demonstrate(

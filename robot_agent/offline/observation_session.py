@@ -13,7 +13,7 @@ from robot_agent.drivers.sim.camera import BUILT_IN_MODEL, CALIBRATION_RANGES_M
 from robot_agent.drivers.sim.rendering.camera import SceneCamera, SimulatedCamera, calibration_frames
 from robot_agent.drivers.sim.rendering.conditions import conditions
 from robot_agent.drivers.sim.rendering.scene import Rectangle, Scene, SceneRobot
-from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, copy_moves
+from robot_agent.imitation.copying import Copy, NoCopy, copy_moves
 from robot_agent.imitation.observer import Watch
 from robot_agent.offline.demonstrations import (
     Demonstration,
@@ -23,9 +23,9 @@ from robot_agent.offline.demonstrations import (
     random_moves,
 )
 from robot_agent.vision.colour_calibration import learn_colour_table
-from robot_agent.vision.detector import PROFILES, Detector
+from robot_agent.vision.detector import MEASUREMENTS, Detector
 from swarm.clock import NS_PER_S
-from swarm.config.experiment import Experiment, RobotSettings, Role, RunSettings, Watching
+from swarm.config.experiment import CopyProfile, Experiment, RobotSettings, Role, RunSettings
 from swarm.geometry import Grid, Move, Pose, wrap_angle_rad
 from swarm.learning.random import spawned_generator
 
@@ -33,7 +33,7 @@ SETTLE_TICKS = 20
 """The observer stands for so long before it watches, as in a run, and knows its heading by then."""
 
 
-def offline_experiment(profile: Watching = Watching.BEST, light: str = "realistic") -> Experiment:
+def offline_experiment(profile: CopyProfile = CopyProfile.BEST, light: str = "realistic") -> Experiment:
     """Two robots in compartments of the paper's size; the second watches the first."""
     demonstrator = RobotSettings("demonstrator", (0.0, 0.0), role=Role.EXPERT)
     observer = RobotSettings("observer", (1.5, 0.0), watches="demonstrator")
@@ -89,12 +89,12 @@ class Stage:
         walls = experiment.compartment(demonstrator)
         self.room = Rectangle(walls.west_m, walls.south_m, walls.east_m, walls.north_m)
         self.robot = TrackedRobot(experiment, self.place, experiment.compartment(observer), body_rng)
-        profile = PROFILES[experiment.visits.profile.value]
+        profile = MEASUREMENTS[experiment.visits.profile]
         model = BUILT_IN_MODEL.scaled(profile.width, profile.height)
         light = SimulatedCamera(model, conditions(experiment.camera.conditions), camera_rng)
         frames = calibration_frames(light, self._skirt, CALIBRATION_RANGES_M)
         self.detector = Detector(
-            experiment.visits.profile.value, model, learn_colour_table(frames, model, self._skirt)
+            experiment.visits.profile, model, learn_colour_table(frames, model, self._skirt)
         )
         self.camera = SceneCamera(light, self.look)
         self.shown: Callable[[int], Scene | None] = lambda _: Scene((self.room,))
@@ -111,8 +111,8 @@ class Stage:
         pose_at = self.robot.pose_at
         watch = Watch(self.camera, self.detector, pose_at, began_ns, duration_s, visits.frames_per_s)
         self.run(watch, began_ns, len(demonstration.track))
-        profile, cell_m = CopyProfile(visits.profile.value), self._experiment.arena.cell_m
-        copied = copy_moves(watch.positions, profile, cell_m, watch.expected_frames)
+        cell_m = self._experiment.arena.cell_m
+        copied = copy_moves(watch.positions, visits.profile, cell_m, watch.expected_frames)
         return ObservedDemonstration(demonstration, watch, copied, began_ns, self._tick_ns)
 
     def scenes(self, demonstration: Demonstration) -> Callable[[int], Scene]:

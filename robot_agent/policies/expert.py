@@ -2,62 +2,45 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypedDict
 
-from robot_agent.policies.policy import Publish, Transition, shortest_moves
+from robot_agent.reports import Reporter
 from swarm.geometry import Grid
-from swarm.messages import swarm_pb2 as pb
-from swarm.messages import topics
+from swarm.learning.expert import expert_move
+from swarm.learning.learner import MoveRecord, Transition
 
 
-class Expert:
+class ExpertSnapshot(TypedDict):
+    """An expert's counters."""
+
+    moves: int
+    tracks: int
+
+
+class ExpertPolicy:
     """Demonstrates; it has nothing to learn and never finishes."""
 
     finished = False
 
-    def __init__(self, grid: Grid, publish: Publish) -> None:
+    def __init__(self, grid: Grid, reporter: Reporter) -> None:
         self.moves = 0
         self.tracks = 0
-        self._goal = grid.goal
-        self._publish = publish
-        self._action_in = self._actions(grid)
-
-    @staticmethod
-    def _actions(grid: Grid) -> dict[int, int]:
-        """The move in each cell of the shortest path."""
-        actions, state = {}, grid.start
-        for move in shortest_moves(grid):
-            actions[state] = int(move)
-            entered = grid.neighbour(state, move)
-            assert entered is not None
-            state = entered
-        return actions
+        self._grid = grid
+        self._reporter = reporter
 
     def choose(self, state: int) -> int:
-        """The path's move; a robot that was set down beside the path heads for the goal by it."""
-        return self._action_in.get(state, min(self._action_in.values()))
+        return expert_move(self._grid, state)
 
     def learn(self, transition: Transition) -> None:
         self.moves += 1
-        self._publish(
-            topics.MOVE,
-            pb.Move(
-                number=self.moves,
-                track=self.tracks + 1,
-                state=transition.state,
-                action=transition.action,
-                next_state=transition.next_state,
-                duration_s=transition.duration_s,
-                blocked=transition.blocked,
-            ),
-        )
-        self.tracks += transition.next_state == self._goal
+        self._reporter.move(MoveRecord(self.moves, self.tracks + 1, transition))
+        self.tracks += transition.next_state == self._grid.goal
 
     def abandon(self) -> None:
         """An expert learns nothing from any move."""
 
-    def snapshot(self) -> dict[str, Any]:
+    def snapshot(self) -> ExpertSnapshot:
         return {"moves": self.moves, "tracks": self.tracks}
 
-    def restore(self, snapshot: dict[str, Any]) -> None:
-        self.moves, self.tracks = int(snapshot["moves"]), int(snapshot["tracks"])
+    def restore(self, saved: ExpertSnapshot) -> None:
+        self.moves, self.tracks = saved["moves"], saved["tracks"]

@@ -7,20 +7,19 @@ from the camera's axis, so a thing to the left has a positive bearing.
 from __future__ import annotations
 
 import math
-import tomllib
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from swarm.errors import UserError, nearest
+from swarm.config.toml_files import ConfigFile
+from swarm.errors import UserError
 from swarm.geometry import Pose
 
 NEWTON_STEPS = 8
+"""More than enough: the error squares at every step, and no lens bends by more than `_bends_gently`."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +39,7 @@ class CameraModel:
     gamma: float = 1.0
     forward_m: float = 0.03
     height_m: float = 0.028
+    """Ahead of the turning axis and above the floor, as Webots' guide to the e-puck has them."""
     yaw_rad: float = 0.0
 
     def __post_init__(self) -> None:
@@ -120,76 +120,61 @@ def _is_size(pixels: int) -> bool:
     return 16 <= pixels <= 4096 and pixels % 2 == 0
 
 
-_FIELDS: dict[str, dict[str, type]] = {
-    "image": {"width": int, "height": int},
-    "lens": {"horizontal_field_of_view_deg": float, "radial": list, "horizon": float, "gamma": float},
-    "mounting": {"forward_m": float, "height_m": float, "yaw_deg": float},
-}
+@dataclass(frozen=True)
+class ImageSettings:
+    """[image]: the resolution."""
+
+    width: int
+    height: int
+
+
+@dataclass(frozen=True)
+class LensSettings:
+    """[lens]: how directions become pixels and light becomes levels; see `CameraModel`."""
+
+    horizontal_field_of_view_deg: float
+    radial: tuple[float, float]
+    horizon: float
+    gamma: float
+
+
+@dataclass(frozen=True)
+class MountingSettings:
+    """[mounting]: where the camera sits on the robot."""
+
+    forward_m: float
+    height_m: float
+    yaw_deg: float
+
+
+@dataclass(frozen=True)
+class CalibrationFile:
+    """A calibration file (deploy/cameras/*.toml); every field of it must be there."""
+
+    image: ImageSettings
+    lens: LensSettings
+    mounting: MountingSettings
+
+    def model(self) -> CameraModel:
+        """ValueError if no camera is like this."""
+        image, lens, mounting = self.image, self.lens, self.mounting
+        return CameraModel(
+            image.width,
+            image.height,
+            math.radians(lens.horizontal_field_of_view_deg),
+            lens.radial,
+            lens.horizon,
+            lens.gamma,
+            mounting.forward_m,
+            mounting.height_m,
+            math.radians(mounting.yaw_deg),
+        )
 
 
 def load_camera_model(path: Path | str) -> CameraModel:
-    """Read a calibration file (deploy/cameras/*.toml); every field of it must be there.
-
-    Raises UserError, naming the file and the field, when the file cannot be used.
-    """
+    """Read a calibration file; UserError names the file and what is wrong with it."""
+    calibration = ConfigFile(Path(path)).settings(CalibrationFile)
     try:
-        with Path(path).open("rb") as file:
-            tables = tomllib.load(file)
-    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UserError(f"camera calibration {path}: {error}") from error
-    try:
-        return _model(_checked(tables))
+        return calibration.model()
     except ValueError as error:
         raise UserError(f"camera calibration {path}: {error}") from error
-
-
-def _model(values: Mapping[str, Any]) -> CameraModel:
-    return CameraModel(
-        width=values["width"],
-        height=values["height"],
-        horizontal_field_of_view_rad=math.radians(values["horizontal_field_of_view_deg"]),
-        radial=_pair(values["radial"]),
-        horizon=values["horizon"],
-        gamma=values["gamma"],
-        forward_m=values["forward_m"],
-        height_m=values["height_m"],
-        yaw_rad=math.radians(values["yaw_deg"]),
-    )
-
-
-def _checked(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """All the fields in one dictionary; ValueError for one that is unknown, missing or of a wrong type."""
-    _refuse_unknown("table", tables, _FIELDS)
-    values: dict[str, Any] = {}
-    for table, fields in _FIELDS.items():
-        given = tables.get(table, {})
-        if not isinstance(given, dict):
-            raise ValueError(f"{table} must be a table: write [{table}]")
-        _refuse_unknown(f"field of [{table}]", given, fields)
-        for name, kind in fields.items():
-            values[name] = _typed(f"[{table}] {name}", given.get(name), kind)
-    return values
-
-
-def _refuse_unknown(what: str, given: Mapping[str, Any], known: Mapping[str, Any]) -> None:
-    for name in given:
-        if name not in known:
-            raise ValueError(f"unknown {what} {name!r}; {nearest(name, known)}")
-
-
-def _typed(where: str, value: Any, kind: type) -> Any:
-    if value is None:
-        raise ValueError(f"{where} is missing")
-    accepted = (int, float) if kind is float else (kind,)
-    if isinstance(value, bool) or not isinstance(value, accepted):
-        raise ValueError(f"{where} = {value!r} is not {'a number' if kind in (int, float) else 'a list'}")
-    if isinstance(value, float) and not math.isfinite(value):
-        raise ValueError(f"{where} = {value!r} is not finite")
-    return value
-
-
-def _pair(values: list[Any]) -> tuple[float, float]:
-    if len(values) != 2:
-        raise ValueError(f"[lens] radial = {values!r} must have two numbers, k1 and k2")
-    first, second = (_typed("[lens] radial", value, float) for value in values)
-    return first, second

@@ -18,13 +18,19 @@ from robot_agent.vision.pixels import Words, frame_words, word_colours
 from swarm.errors import UserError
 
 MIN_SATURATION = 0.15
+"""Chosen: a skirt paler than this cannot be told from a white wall under a colour cast of 15 %."""
 PART_OF_SATURATION = 0.45
 """Of the skirt's: lower than this, pixels of the wall beside it would count, unevenly, as skirt."""
 HUE_TOLERANCE_RAD = (0.14, 0.22)
+"""Least and most; chosen: neighbours in the rainbow (red and orange) are 0.5 rad apart."""
 HUE_DEVIATIONS = 4.0
+"""Chosen: of the skirt's own pixels, all but a few in 100,000 if they spread normally."""
 PART_OF_LIGHT = 0.45
+"""Of the skirt's median; chosen: darker pixels are of the shadow or of the body."""
 PALE_SATURATION = 0.12
+"""Chosen: just below the least saturation of a skirt, so that no colour is both."""
 PALE_PART_OF_LIGHT = 0.3
+"""Of the brightest wall; chosen: its shaded parts count as wall, the dark body does not."""
 
 
 def learn_colour_table(frames: Sequence[Frame], model: CameraModel, skirt: str) -> ColourTable:

@@ -14,6 +14,7 @@ from swarm.errors import UserError
 
 OTHER, SKIRT, PALE = 0, 1, 2
 MAX_FILE_BYTES = 1 << 18
+"""Four times an uncompressed table of 64 Ki colours: a larger file is none."""
 
 
 @dataclass(frozen=True)

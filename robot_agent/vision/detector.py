@@ -33,18 +33,25 @@ from robot_agent.vision.skirt import (
     sides_by_size,
     sides_of_box,
 )
-from swarm.errors import UserError, nearest
+from swarm.config.experiment import CopyProfile
+from swarm.errors import UserError
 
 MOUNTING_SD_RAD = math.radians(0.05)
+"""Chosen: a camera's own yaw is calibrated to within this, a third of a pixel."""
 MAX_CANDIDATES = 6
+"""Chosen: bounds the work on a frame full of patches; a compartment holds one robot."""
 BORDER_PX = 5
 """An edge needs this much of the wall beside it."""
 CLEARLY_NEARER = 0.5
+"""Chosen: the best candidate must fit where the demonstrator was twice as well as the next."""
 HEIGHT_SD_PX = 1.5
+"""Chosen: pitch, body and shadow move a patch's upper and lower border by a pixel or so each."""
 MIN_WIDTH_PX = 4
+"""Chosen: narrower than a skirt anywhere in the arena (15 pixels at 1.55 m, half at 160 x 120)."""
 LIKE_PART = 0.15
+"""Chosen: of the columns beside a patch; more of the skirt's colour there is another thing close by."""
 DARK_LIGHT = 0.03
-"""Of the sensor's full scale."""
+"""Of the sensor's full scale; chosen: a wall darker than this is unlit."""
 
 
 class Reason(Enum):
@@ -93,7 +100,7 @@ class NotSeen:
 
 
 @dataclass(frozen=True)
-class Profile:
+class PatchMeasurement:
     """How a patch's sides are measured: to a fraction of a pixel, or from its size, the number of its pixels.
 
     `tolerance_px` is how far a patch's upper and lower border may be from where a skirt's would be.
@@ -107,9 +114,9 @@ class Profile:
     tolerance_px: float
 
 
-PROFILES = {
-    "best": Profile(320, 240, sub_pixel=True, edge_sd_px=0.08, tolerance_px=1.7),
-    "paper": Profile(160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6),
+MEASUREMENTS = {
+    CopyProfile.BEST: PatchMeasurement(320, 240, sub_pixel=True, edge_sd_px=0.08, tolerance_px=1.7),
+    CopyProfile.PAPER: PatchMeasurement(160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6),
 }
 
 
@@ -120,10 +127,8 @@ class Detector:
     number of the patch's pixels). The camera's model is taken at the profile's resolution.
     """
 
-    def __init__(self, profile: str, model: CameraModel, table: ColourTable) -> None:
-        if profile not in PROFILES:
-            raise UserError(f"unknown profile {profile!r}; {nearest(profile, PROFILES)}")
-        self.profile = PROFILES[profile]
+    def __init__(self, profile: CopyProfile, model: CameraModel, table: ColourTable) -> None:
+        self.profile = MEASUREMENTS[profile]
         self.model = model.scaled(self.profile.width, self.profile.height)
         self._is_skirt = (table.kinds == SKIRT).astype(np.uint8)
         self._finder = EdgeFinder(self.model, table)

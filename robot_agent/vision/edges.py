@@ -20,22 +20,29 @@ from robot_agent.vision.pixels import Words, word_colours
 REACH_PX = 3
 """Half the window around an edge; more than the blur, so that it holds the whole step."""
 PLATEAU_PX = 5
+"""Chosen: enough pixels on either side of the step for their noise to average out."""
 MAX_SHIFT_PX = 3.0
 """Farther from the patch's border than the blur explains is the edge of another thing."""
 MIN_PALE = 0.75
+"""Chosen: of the wall beside an edge; the rest may be noise, but not another thing."""
 MIN_STEP = 0.03
+"""Of full scale; chosen: a lower step is no edge above the sensor's noise."""
 BODY_ROWS = 3
 """How far up to look for the body: farther up, the dark may be what is above the wall."""
 SHARP_ROWS = 10
 """A patch this high leaves out the row right above it, which the blur darkens above a post too."""
 DARK_PART_OF_WALL = 0.6
+"""Chosen: between a shaded wall, which is lighter, and an e-puck's body, which is darker."""
 WALL_ROWS = 4
+"""Chosen: some rows of wall right above the patch, few enough to stay below the wall's rim."""
 RIM_ROWS = 2
 """The blur mixes into these the narrower body above the skirt and the shadow below it."""
 ROWS_UP_PART = 1 / 24
 """Of the image's height above the horizon: farther up is no wall behind a robot that is near."""
 ENOUGH_ROWS = 6
+"""Chosen: so many rows average the noise of an edge of the smallest skirt that is seen."""
 MOST_ROWS = 24
+"""Chosen: more rows of a near skirt cost time and add no precision that the bearing could use."""
 
 
 @dataclass(frozen=True)

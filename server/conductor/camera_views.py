@@ -12,6 +12,7 @@ from swarm.messages import topics
 from swarm.runtime.subscription import Received
 
 LEDGE_M = 0.02
+"""A robot on its compartment's border is still in it; far less than a cell, so no neighbour is."""
 
 
 class CameraViews:

@@ -17,7 +17,9 @@ from swarm.messages import topics
 from swarm.runtime.subscription import Received, Subscription, Subscriptions
 
 RUN_STATE_PERIOD_NS = NS_PER_S
+"""A robot that has not heard it for 5 s waits; so four may be lost."""
 STUCK_AFTER_NS = 600 * NS_PER_S
+"""Twenty times the default visit of 30 s, in which a robot makes no move."""
 
 
 class Conductor:

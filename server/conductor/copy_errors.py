@@ -15,7 +15,9 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 
 MOVES_KEPT = 1000
+"""More than the longest visit, of 600 s, has room for: no move takes less than a second."""
 LAST_MOVE_REPORTED_NS = 5 * NS_PER_S
+"""A move is reported when it ends: two of the mean move of 2.4 s. Nobody waits for this."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 
 REPEAT_NS = 10 * NS_PER_S
+"""Matters only to an agent that restarted within a visit, which stands for so long at most."""
 
 
 @dataclass

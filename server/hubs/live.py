@@ -14,8 +14,8 @@ from swarm.config.experiment import Experiment
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import Delivery, Topic
 from swarm.runtime.liveliness import present
-from swarm.runtime.node import Sequencer
-from swarm.runtime.zenoh_session import Publisher, Session, WireSample
+from swarm.runtime.node import LivePublisher
+from swarm.runtime.zenoh_session import Session, WireSample
 
 M = TypeVar("M", bound=Message)
 
@@ -36,13 +36,11 @@ class LiveHub:
         self._session = session
         self._clock = clock
         self._ticks: Iterator[int] = clock.ticks(experiment.simulation.tick_s)
-        self._epoch = time.time_ns()
         self._robots = [robot.id for robot in experiment.robot]
         self._check = check
         self._warn = warn
         self._inboxes = [session.inbox(key, Delivery.EVERY) for key in EVERYTHING]
-        self._publishers: dict[str, Publisher] = {}
-        self._sequencer = Sequencer()
+        self._live = LivePublisher(session, clock, epoch=time.time_ns())
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
 
@@ -59,11 +57,7 @@ class LiveHub:
                 self._warn(f"waiting for {', '.join(missing)}")
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
-        key = topic.key(robot)
-        header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
-        if key not in self._publishers:
-            self._publishers[key] = self._session.publisher(key, topic.delivery)
-        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
+        self._live.publish(topic, message, robot)
 
     def advance(self) -> None:
         """In real time the processes need no leave."""

@@ -23,9 +23,13 @@ from swarm.runtime.zenoh_session import Session
 M = TypeVar("M", bound=Message)
 
 WAKE_S = 0.25
+"""How often a hub that hears nothing looks whether its processes live: after hundreds of exchanges."""
 NAMED_AFTER_S = 2.0
+"""Long for a tick, short for a person; a tick that was lost is sent again then."""
 LOST_AFTER_S = 30.0
+"""Half the lease: the hub ends the run and says why, before Zenoh closes a connection."""
 GREETED_WITHIN_S = 60.0
+"""A hundred processes at once take about ten seconds on two busy cores (measured)."""
 
 
 class LockstepHub:

@@ -7,7 +7,6 @@ import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 
 from server.processes.cpu_affinity import keep, spread
 from swarm.errors import RunFailedError
@@ -15,6 +14,7 @@ from swarm.interpreter import child_environment, module_command
 from swarm.parallel import available_cores
 
 LEAVE_WITHIN_S = 5.0
+"""A process leaves after its step, which takes far less; one that has not by then hangs."""
 
 
 @dataclass(frozen=True)
@@ -47,12 +47,7 @@ class Supervisor:
             self._processes[spec.name] = self._started(spec, number)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None:
             self._signal(signal.SIGTERM)
         for process in self._processes.values():

@@ -8,7 +8,9 @@ from swarm.clock import NS_PER_S
 from swarm.messages.topics import topic_of
 
 WINDOW_NS = 10 * NS_PER_S
+"""A hundred messages of the common rate of 10 Hz: a share is then known to some percent."""
 LOW_SHARE = 0.5
+"""A blackout of the simulated tracker, 3 s, leaves two thirds of a window: it is no fault."""
 
 
 class Health:

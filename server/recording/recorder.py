@@ -16,6 +16,7 @@ from swarm.files import new_file
 from swarm.messages.topics import topic_of
 
 CHUNK_BYTES = 256 * 1024
+"""Smaller ones compress worse; of a larger one more is lost when the recorder is killed."""
 
 
 class Recorder:

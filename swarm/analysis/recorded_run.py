@@ -5,8 +5,8 @@ What `swarm analyze` writes into files is here to be worked with, made by the sa
 
 from __future__ import annotations
 
+import atexit
 import shutil
-import weakref
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -31,13 +31,14 @@ class RecordedRun:
     """The logs of one run, or of several pooled.
 
     The logs are read when something of them is first asked for, once, into Parquet files that last as long
-    as this object. Poses, commands and truths, nearly all of a log, are read only if one is asked for.
+    as the interpreter: a lazy table may be collected after this object is gone. Poses, commands and truths,
+    nearly all of a log, are read only if one of them is asked for.
     """
 
     def __init__(self, *runs: str | PathLike[str]) -> None:
         self._inputs: Inputs = find_inputs([Path(run) for run in runs])
         self._folder = Path(mkdtemp(prefix="swarm-run-"))
-        weakref.finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
+        atexit.register(shutil.rmtree, self._folder, ignore_errors=True)
 
     @property
     def logs(self) -> tuple[LogIdentity, ...]:

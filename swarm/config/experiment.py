@@ -8,19 +8,26 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from enum import Enum
+from enum import Enum, StrEnum
 from pathlib import Path
 from typing import Annotated
+
+import numpy as np
 
 from swarm.config.toml_files import Between, ConfigFile
 from swarm.errors import nearest
 from swarm.geometry import Compartment, Grid, Pose
-from swarm.learning.memory import Approach, ObservedPath
+from swarm.learning.controller import Controller
+from swarm.learning.learner import Learner
+from swarm.learning.memory import Approach, ImitationMemory, ObservedPath
+from swarm.learning.q_table import QTable
+from swarm.learning.random import spawned_generator
 from swarm.messages.topics import is_id
 
 NonNegative = Between(0)
 
 BEYOND_CORNER_M = 0.05
+"""So far in x and in y: the observer's body, of 0.035 m radius, is wholly outside the compartment."""
 
 
 class Role(Enum):
@@ -116,7 +123,7 @@ class TrackerSettings:
     """How long such a loss lasts."""
 
 
-class Watching(Enum):
+class CopyProfile(StrEnum):
     """How what was seen becomes moves."""
 
     BEST = "best"
@@ -137,7 +144,7 @@ class VisitSettings:
     """Camera frames that are looked at while watching."""
     moves: Annotated[int, Between(1, 100)] = 5
     """Consecutive moves that are remembered of what was seen."""
-    profile: Watching = Watching.BEST
+    profile: CopyProfile = CopyProfile.BEST
     """How frames become moves; see copying.md."""
 
 
@@ -235,6 +242,23 @@ class Experiment:
         """The walled square that belongs to a robot."""
         grid = Grid(self.arena.columns, self.arena.rows)
         return Compartment(*robot.south_west_m, grid, self.arena.cell_m)
+
+    def generator(self, robot: RobotSettings, trial: int, component: str) -> np.random.Generator:
+        """The random numbers of one component of a robot in a trial: the same for it and its surrogate."""
+        return spawned_generator(self.run.seed, robot.group, trial, robot.id, component)
+
+    def learner(self, robot: RobotSettings, trial: int) -> Learner:
+        """A robot's learner by the rules of [learning], with an empty memory."""
+        rules, grid = self.learning, self.compartment(robot).grid
+        memory = ImitationMemory(rules.beta, rules.approach, rules.capacity)
+        choices = self.generator(robot, trial, "controller")
+        return Learner(
+            grid,
+            Controller(QTable(grid.states), memory, rules.epsilon, choices),
+            self.generator(robot, trial, "evaluation"),
+            rules.path_length_cap,
+            rules.discount_rate_per_s,
+        )
 
     def observers_place(self, demonstrator: RobotSettings) -> Pose:
         """Where a robot stands to watch: just outside the compartment's south-east corner, facing in.

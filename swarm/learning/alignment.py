@@ -1,4 +1,4 @@
-"""How far a copied list of moves is from the real one."""
+"""How far a copied list of moves is from the real one, and which move stands for which (Levenshtein 1966)."""
 
 from __future__ import annotations
 
@@ -6,11 +6,36 @@ from collections.abc import Sequence
 
 
 def edit_distance(copied: Sequence[int], real: Sequence[int]) -> int:
-    """The least number of moves to insert, leave out or change (Levenshtein 1966)."""
-    row = list(range(len(real) + 1))
-    for number, move in enumerate(copied, 1):
-        before, row[0] = row[0], number
-        for place, wanted in enumerate(real, 1):
-            changed = before + (move != wanted)
-            before, row[place] = row[place], min(changed, row[place] + 1, row[place - 1] + 1)
-    return row[-1]
+    """The least number of moves to insert, leave out or change."""
+    return _costs(real, copied)[-1][-1]
+
+
+def aligned(real: Sequence[int], copied: Sequence[int]) -> list[list[int]]:
+    """For each real move the copied ones that stand for it, with the least number of edits.
+
+    One for a move that was copied or changed, none for one that was left out; an added move stands with
+    the one before it, and at the beginning with the first.
+    """
+    cost = _costs(real, copied)
+    stand: list[list[int]] = [[] for _ in real]
+    i, j = len(real), len(copied)
+    while i or j:
+        if i and j and cost[i][j] == cost[i - 1][j - 1] + (real[i - 1] != copied[j - 1]):
+            i, j = i - 1, j - 1
+            stand[i].insert(0, copied[j])
+        elif j and cost[i][j] == cost[i][j - 1] + 1:
+            j -= 1
+            stand[max(i - 1, 0)].insert(0, copied[j])
+        else:
+            i -= 1
+    return stand
+
+
+def _costs(real: Sequence[int], copied: Sequence[int]) -> list[list[int]]:
+    """The edit distance between every beginning of the one and every beginning of the other."""
+    cost = [[i + j for j in range(len(copied) + 1)] for i in range(len(real) + 1)]
+    for i in range(1, len(real) + 1):
+        for j in range(1, len(copied) + 1):
+            changed = cost[i - 1][j - 1] + (real[i - 1] != copied[j - 1])
+            cost[i][j] = min(changed, cost[i - 1][j] + 1, cost[i][j - 1] + 1)
+    return cost

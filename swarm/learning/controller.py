@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TypedDict
 
 from swarm.geometry import MOVES
-from swarm.learning.memory import ImitationMemory, RememberedPath
+from swarm.learning.memory import ImitationMemory, MemorySnapshot, RememberedPath
 from swarm.learning.q_table import QTable
-from swarm.learning.random import Rng
+from swarm.learning.random import Rng, RngState, restore_rng, rng_state
 
 
 class Outcome(Enum):
@@ -32,6 +33,9 @@ class Replay:
     index: int = 0
     q_change: float = 0.0
 
+    def snapshot(self) -> ReplaySnapshot:
+        return {"path": self.remembered.number, "index": self.index, "q_change": self.q_change}
+
 
 @dataclass(frozen=True)
 class EndedReplay:
@@ -41,6 +45,24 @@ class EndedReplay:
     moves: int
     outcome: Outcome
     q_change: float
+
+
+class ReplaySnapshot(TypedDict):
+    """A replay under way, as JSON can hold it."""
+
+    path: int
+    """The number of the path."""
+    index: int
+    q_change: float
+
+
+class ControllerSnapshot(TypedDict):
+    """A controller, as JSON can hold it."""
+
+    q: list[list[float]]
+    memory: MemorySnapshot
+    replay: ReplaySnapshot | None
+    rng: RngState
 
 
 class Controller:
@@ -131,3 +153,22 @@ class Controller:
         remembered.n_q_plus += q_change > 0
         self.ended = EndedReplay(remembered, executed, outcome, q_change)
         self.replay = None
+
+    def snapshot(self) -> ControllerSnapshot:
+        """Table, memory, the replay under way, and the random numbers to come."""
+        return {
+            "q": self.q.snapshot(),
+            "memory": self.memory.snapshot(),
+            "replay": self.replay.snapshot() if self.replay else None,
+            "rng": rng_state(self.rng),
+        }
+
+    def restore(self, saved: ControllerSnapshot) -> None:
+        """Go on from a snapshot; ValueError if it does not fit."""
+        self.q.restore(saved["q"])
+        self.memory.restore(saved["memory"])
+        restore_rng(self.rng, saved["rng"])
+        replay = saved["replay"]
+        self.replay = replay and Replay(
+            self.memory.numbered(replay["path"]), replay["index"], replay["q_change"]
+        )

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 from itertools import accumulate
-from typing import Protocol
+from typing import Protocol, TypedDict
 
 from swarm.geometry import Move
 from swarm.learning.q_table import QTable
@@ -30,6 +30,25 @@ class RememberedPath:
     n_replicated: int = 0
     n_completed: int = 0
     n_q_plus: int = 0
+    number: int = 0
+    """Counted from 1 in the order in which paths were remembered; no other path ever gets it."""
+
+
+class PathSnapshot(TypedDict):
+    """A remembered list of moves, as JSON can hold it."""
+
+    moves: list[str]
+    n_replicated: int
+    n_completed: int
+    n_q_plus: int
+    number: int
+
+
+class MemorySnapshot(TypedDict):
+    """An imitation memory, as JSON can hold it."""
+
+    observed: int
+    paths: list[PathSnapshot]
 
 
 class ImitationMemory:
@@ -42,6 +61,8 @@ class ImitationMemory:
         self.beta = beta
         self.approach = approach
         self.capacity = capacity
+        self.observed = 0
+        """Paths that were ever remembered."""
         self.remembered: list[RememberedPath] = []
 
     def ratio(self, remembered: RememberedPath) -> float:
@@ -67,13 +88,38 @@ class ImitationMemory:
         """Store a path; a full memory forgets the one with the lowest ratio, the oldest of equals."""
         if len(self.remembered) >= self.capacity:
             self.remembered.remove(min(self.remembered, key=self.ratio))
-        remembered = RememberedPath(path)
+        self.observed += 1
+        remembered = RememberedPath(path, number=self.observed)
         self.remembered.append(remembered)
         return remembered
 
     @property
     def full(self) -> bool:
         return len(self.remembered) >= self.capacity
+
+    def numbered(self, number: int) -> RememberedPath:
+        """The path of this number; ValueError if it is not in the memory."""
+        for remembered in self.remembered:
+            if remembered.number == number:
+                return remembered
+        raise ValueError(f"path {number} is not in the memory")
+
+    def snapshot(self) -> MemorySnapshot:
+        """Of a memory of lists of moves."""
+        return {"observed": self.observed, "paths": [_path_snapshot(each) for each in self.remembered]}
+
+    def restore(self, saved: MemorySnapshot) -> None:
+        self.observed = saved["observed"]
+        self.remembered = [
+            RememberedPath(
+                ObservedPath.parse(path["moves"]),
+                path["n_replicated"],
+                path["n_completed"],
+                path["n_q_plus"],
+                path["number"],
+            )
+            for path in saved["paths"]
+        ]
 
 
 class Path(Protocol):
@@ -111,6 +157,12 @@ class ObservedPath:
         return cls(tuple(Move[name] for name in moves))
 
 
+def choose_window(moves: tuple[Move, ...], count: int, rng: Rng) -> tuple[Move, ...]:
+    """`count` consecutive moves at a random place of a longer track; all of a shorter one."""
+    first = int(rng.integers(max(len(moves) - count, 0) + 1))
+    return moves[first : first + count]
+
+
 @dataclass(frozen=True)
 class AccessedPolicy:
     """Section 2.4: the other agent's greedy action in the observer's own state, for up to `length` moves.
@@ -127,3 +179,15 @@ class AccessedPolicy:
 
     def action(self, index: int, state: int, rng: Rng) -> int:  # noqa: ARG002
         return self.other.greedy(state, rng)
+
+
+def _path_snapshot(remembered: RememberedPath) -> PathSnapshot:
+    if not isinstance(remembered.path, ObservedPath):
+        raise TypeError("only a list of moves can be saved, not the access to another's policy")
+    return {
+        "moves": [move.name for move in remembered.path.moves],
+        "n_replicated": remembered.n_replicated,
+        "n_completed": remembered.n_completed,
+        "n_q_plus": remembered.n_q_plus,
+        "number": remembered.number,
+    }

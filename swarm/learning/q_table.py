@@ -55,6 +55,16 @@ class QTable:
         self.values[state][action] += change
         return change
 
+    def snapshot(self) -> list[list[float]]:
+        """The value of every action in every state."""
+        return [list(row) for row in self.values]
+
+    def restore(self, values: list[list[float]]) -> None:
+        """Go on from a snapshot; ValueError if it is of another number of states."""
+        if len(values) != len(self.values):
+            raise ValueError(f"it has {len(values)} states; the grid has {len(self.values)}")
+        self.values = [[float(value) for value in row] for row in values]
+
 
 def discount_over(duration_s: float, rate_per_s: float = DISCOUNT_RATE_PER_S) -> float:
     """Eq. 7's exp(-beta (t2 - t1)) for a measured duration: 0.7 over a move of 2.4 s.

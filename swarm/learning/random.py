@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import zlib
-from typing import Protocol
+from collections.abc import Mapping
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -16,6 +17,26 @@ class Rng(Protocol):
 
     def integers(self, high: int, /) -> int | np.integer:
         """A whole number in [0, high)."""
+
+
+RngState = Mapping[str, Any]
+"""The state of a numpy generator, as JSON can hold it."""
+
+
+def rng_state(rng: Rng) -> RngState:
+    """What `restore_rng` needs to go on with the same numbers; only a numpy generator has it."""
+    return _numpy_generator(rng).bit_generator.state
+
+
+def restore_rng(rng: Rng, state: RngState) -> None:
+    """Go on with the numbers that would have followed when `rng_state` was asked."""
+    _numpy_generator(rng).bit_generator.state = state
+
+
+def _numpy_generator(rng: Rng) -> np.random.Generator:
+    if not isinstance(rng, np.random.Generator):
+        raise TypeError(f"the state of a {type(rng).__name__} cannot be saved: use a numpy generator")
+    return rng
 
 
 def spawned_generator(

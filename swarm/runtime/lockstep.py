@@ -20,7 +20,9 @@ from swarm.runtime.zenoh_session import Session, SessionSettings
 M = TypeVar("M", bound=Message)
 
 WAKE_S = 0.25
+"""How often the main thread looks whether it is wanted; between two of its looks pass hundreds of ticks."""
 WAKES_WITHOUT_HUB = 8
+"""2 s without the server's presence, which vanishes with its session."""
 LEASE_S = 60.0
 """A process gives no sign of life while it steps; the hub itself finds out who is silent for too long."""
 SENT_AT_ONCE_BYTES = 32_768

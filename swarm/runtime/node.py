@@ -53,6 +53,25 @@ class Sequencer:
         return number
 
 
+class LivePublisher:
+    """Sends messages over the network, each with its sender's epoch, its number and the time."""
+
+    def __init__(self, session: Session, clock: WallClock, epoch: int) -> None:
+        self._session = session
+        self._clock = clock
+        self._epoch = epoch
+        self._sequencer = Sequencer()
+        self._publishers: dict[str, Publisher] = {}
+
+    def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
+        """Send a message under the topic's key, of a robot if it has one."""
+        key = topic.key(robot)
+        header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
+        if key not in self._publishers:
+            self._publishers[key] = self._session.publisher(key, topic.delivery)
+        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
+
+
 class LiveNode:
     """Takes part over the network at the pace of a clock: on boards, and in simulation at a given speed."""
 
@@ -60,9 +79,7 @@ class LiveNode:
         self._session = session
         self._clock = clock
         self._period_s = period_s
-        self._epoch = epoch
-        self._sequencer = Sequencer()
-        self._publishers: dict[str, Publisher] = {}
+        self._live = LivePublisher(session, clock, epoch)
         self._inboxes: list[tuple[Inbox, Subscription[Any]]] = []
         self.keys_received: set[str] = set()
         self._run_states = self.subscribe(topics.RUN_STATE)
@@ -75,11 +92,7 @@ class LiveNode:
         return subscription
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
-        key = topic.key(robot)
-        header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
-        if key not in self._publishers:
-            self._publishers[key] = self._session.publisher(key, topic.delivery)
-        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
+        self._live.publish(topic, message, robot)
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):

@@ -15,6 +15,7 @@ import numpy as np
 
 from swarm.errors import UserError
 from swarm.geometry import MOVES, Move
+from swarm.learning.alignment import aligned
 
 STORED_COPIES = Path(__file__).parent / "data" / "best.csv"
 """Of rendered demonstrations with the profile `best`; comes with the package."""
@@ -67,32 +68,12 @@ def repeated_errors(pair: CopyPair, shown: Moves) -> Moves:
 def turns_of(pair: CopyPair) -> list[list[int]]:
     """For each true move the copied moves that stand for it, in eighths of a circle away from it.
 
-    [0] is a true copy, [] a move left out, [0, 2] one with another added after it. The assignment has the
-    least number of errors (Levenshtein 1966).
+    [0] is a true copy, [] a move left out, [0, 2] one with another added after it.
     """
-    true, copied = pair.true, pair.copied
-    cost = _costs(true, copied)
-    turns: list[list[int]] = [[] for _ in true]
-    i, j = len(true), len(copied)
-    while i or j:
-        if i and j and cost[i][j] == cost[i - 1][j - 1] + (true[i - 1] != copied[j - 1]):
-            i, j = i - 1, j - 1
-            turns[i].insert(0, (copied[j] - true[i]) % MOVES)
-        elif j and cost[i][j] == cost[i][j - 1] + 1:
-            j -= 1
-            turns[max(i - 1, 0)].insert(0, (copied[j] - true[max(i - 1, 0)]) % MOVES)
-        else:
-            i -= 1
-    return turns
-
-
-def _costs(true: Moves, copied: Moves) -> list[list[int]]:
-    cost = [[i + j for j in range(len(copied) + 1)] for i in range(len(true) + 1)]
-    for i in range(1, len(true) + 1):
-        for j in range(1, len(copied) + 1):
-            changed = cost[i - 1][j - 1] + (true[i - 1] != copied[j - 1])
-            cost[i][j] = min(changed, cost[i - 1][j] + 1, cost[i][j - 1] + 1)
-    return cost
+    return [
+        [(copied - true) % MOVES for copied in stand]
+        for true, stand in zip(pair.true, aligned(pair.true, pair.copied), strict=True)
+    ]
 
 
 def write_copies(pairs: Iterable[CopyPair], path: Path, told: Sequence[str]) -> None:

@@ -8,18 +8,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from swarm.config.experiment import Experiment, RobotSettings, Role
-from swarm.geometry import Grid, Move
-from swarm.learning.controller import Controller
-from swarm.learning.greedy_path import greedy_path_length
-from swarm.learning.memory import ImitationMemory, ObservedPath
-from swarm.learning.q_table import QTable, discount_over
-from swarm.learning.random import spawned_generator
+from swarm.geometry import Move
+from swarm.learning.expert import expert_move
+from swarm.learning.learner import Transition
+from swarm.learning.memory import ImitationMemory
 from swarm.surrogate.durations import (
     DRIVE_BACK,
     HEADING_AFTER_THE_DRIVE_BACK,
@@ -28,7 +23,6 @@ from swarm.surrogate.durations import (
     kind_of,
 )
 
-MOVES_BETWEEN_EVALUATIONS = 10
 MOVES_KEPT = 100
 """More than anybody can watch in a visit."""
 
@@ -53,32 +47,21 @@ class SurrogateRobot(ABC):
         self.t_s = 0.0
         self.moves = self.tracks = 0
         self.shown: deque[ShownMoves] = deque(maxlen=MOVES_KEPT)
-        self._experiment, self._trial = experiment, trial
-        self.grid = Grid(experiment.arena.columns, experiment.arena.rows)
+        self.grid = experiment.compartment(settings).grid
+        self._blocked_move_s = experiment.learning.blocked_move_s
         self._state, self._heading = self.grid.start, HEADING_AT_THE_START
         self._durations = durations
-        self._duration_rng = self.generator("durations")
-
-    def generator(self, component: str) -> np.random.Generator:
-        """The same streams of random numbers as in a run of the same experiment."""
-        seed, robot = self._experiment.run.seed, self.settings
-        return spawned_generator(seed, robot.group, self._trial, robot.id, component)
+        self._duration_rng = experiment.generator(settings, trial, "durations")
 
     def move(self) -> None:
         """Choose, move, learn; from the goal drive back to the start."""
-        action = self.choose(self._state)
-        entered = self.grid.neighbour(self._state, action)
-        blocked, next_state = entered is None, self._state if entered is None else entered
-        duration_s = self._duration_s(action, blocked)
-        arrived = next_state == self.grid.goal
-        self.learn(self._state, action, next_state, duration_s, blocked=blocked, arrived=arrived)
-        if not blocked:
-            self.shown.append(ShownMoves(Move(action), self.t_s, self.t_s + duration_s, self.tracks))
-            self._heading = action
-        self.t_s += duration_s
+        transition = self._made(self.choose(self._state))
+        self.learn(transition)
+        self._show(transition)
+        self.t_s += transition.duration_s
         self.moves += 1
-        self._state = next_state
-        if arrived:
+        self._state = transition.next_state
+        if self._state == self.grid.goal:
             self.tracks += 1
             self.t_s += self._durations.drawn(DRIVE_BACK, self._duration_rng)
             self.begin_at_start(HEADING_AFTER_THE_DRIVE_BACK)
@@ -87,76 +70,65 @@ class SurrogateRobot(ABC):
         """Stand in the start cell: after a drive back, or carried there after a visit."""
         self._state, self._heading = self.grid.start, heading
 
-    def _duration_s(self, action: int, blocked: bool) -> float:
-        if blocked:
-            return self._experiment.learning.blocked_move_s
-        return self._durations.drawn(kind_of(self._heading, action), self._duration_rng)
+    def _made(self, action: int) -> Transition:
+        entered = self.grid.neighbour(self._state, action)
+        if entered is None:
+            return Transition(self._state, action, self._state, self._blocked_move_s, blocked=True)
+        duration_s = self._durations.drawn(kind_of(self._heading, action), self._duration_rng)
+        return Transition(self._state, action, entered, duration_s, blocked=False)
+
+    def _show(self, transition: Transition) -> None:
+        """A move into a wall is decided, not driven: nobody can see it."""
+        if not transition.blocked:
+            self._heading = transition.action
+            ends_s = self.t_s + transition.duration_s
+            self.shown.append(ShownMoves(Move(transition.action), self.t_s, ends_s, self.tracks))
 
     @abstractmethod
     def choose(self, state: int) -> int:
         """The move to make from the centre of a cell."""
 
     @abstractmethod
-    def learn(
-        self, state: int, action: int, next_state: int, duration_s: float, *, blocked: bool, arrived: bool
-    ) -> None:
+    def learn(self, transition: Transition) -> None:
         """Take in what came of the last choice."""
 
 
 class SurrogateExpert(SurrogateRobot):
-    """Follows the shortest path of a square grid for ever."""
+    """Follows the shortest path for ever."""
 
     def choose(self, state: int) -> int:
-        column, row = self.grid.cell(state)
-        if column == self.grid.columns - 1:
-            return Move.S
-        return Move.E if row == self.grid.rows - 1 else Move.SE
+        return expert_move(self.grid, state)
 
-    def learn(self, *_: int | float, blocked: bool, arrived: bool) -> None:
+    def learn(self, transition: Transition) -> None:
         """An expert has nothing to learn."""
 
 
 class SurrogateLearner(SurrogateRobot):
-    """Algorithm 3 with eq. 7: the very same controller, memory and table as on a robot."""
+    """Algorithm 3 with eq. 7: the very same learner as on a robot."""
 
     def __init__(
         self, experiment: Experiment, settings: RobotSettings, durations: Durations, trial: int
     ) -> None:
         super().__init__(experiment, settings, durations, trial)
-        rules = experiment.learning
-        self.rules = rules
-        self.memory = ImitationMemory(rules.beta, rules.approach, rules.capacity)
+        self.learner = experiment.learner(settings, trial)
         for path in settings.given_paths():
-            self.memory.remember(path)
-        self.controller = Controller(
-            QTable(self.grid.states), self.memory, rules.epsilon, self.generator("controller")
-        )
-        self.copy_rng = self.generator("copies")
+            self.learner.remember(path)
+        self.copy_rng = experiment.generator(settings, trial, "copies")
         self.visits = 0
         self.best_paths: list[int] = []
         """The greedy path's length after every ten moves."""
-        self._evaluation_rng = self.generator("evaluation")
+
+    @property
+    def memory(self) -> ImitationMemory:
+        return self.learner.controller.memory
 
     def choose(self, state: int) -> int:
-        return self.controller.choose(state)
+        return self.learner.choose(state).action
 
-    def learn(
-        self, state: int, action: int, next_state: int, duration_s: float, *, blocked: bool, arrived: bool
-    ) -> None:
-        discount = discount_over(duration_s, self.rules.discount_rate_per_s)
-        reward = discount * (1.0 if arrived else 0.0)
-        self.controller.learn(state, action, reward, next_state, discount, blocked=blocked, arrived=arrived)
-        if (self.moves + 1) % MOVES_BETWEEN_EVALUATIONS == 0:
-            cap = self.rules.path_length_cap
-            length = greedy_path_length(self.controller.q, self.grid, self._evaluation_rng, cap)
+    def learn(self, transition: Transition) -> None:
+        length = self.learner.learn(transition).best_path_length
+        if length is not None:
             self.best_paths.append(length)
-
-    def abandon(self) -> None:
-        """A visit ends a replay without counting it."""
-        self.controller.replay = None
-
-    def remember(self, moves: Sequence[Move]) -> None:
-        self.memory.remember(ObservedPath(tuple(moves)))
 
 
 def surrogate_robot(

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import numpy as np
-
 from swarm.config.experiment import Experiment
 from swarm.geometry import Move
+from swarm.learning.memory import ObservedPath, choose_window
 from swarm.surrogate.copies import CopyStore
 from swarm.surrogate.durations import HEADING_AT_THE_START, Durations
 from swarm.surrogate.robots import ShownMoves, SurrogateLearner, SurrogateRobot, surrogate_robot
@@ -63,12 +62,8 @@ class RobotTrial:
 
     def _active(self, learners: list[SurrogateLearner]) -> list[SurrogateRobot]:
         """Who still has something to do: an expert as long as somebody may watch it."""
-        moves, capacity = self._experiment.run.moves, self._experiment.learning.capacity
-        wanted = {
-            each.settings.watches
-            for each in learners
-            if each.moves < moves and len(each.memory.remembered) < capacity
-        }
+        moves = self._experiment.run.moves
+        wanted = {each.settings.watches for each in learners if each.moves < moves and not each.memory.full}
         return [
             each
             for each in self._robots.values()
@@ -88,7 +83,7 @@ class RobotTrial:
     def _may_visit(self, robot: SurrogateLearner) -> bool:
         """The conductor's rule: at the start and every so many tracks, until the memory is full."""
         watches = robot.settings.watches
-        if not watches or len(robot.memory.remembered) >= robot.rules.capacity:
+        if not watches or robot.memory.full:
             return False
         due = robot.tracks >= robot.visits * self._experiment.visits.every_tracks
         is_taken = max(self._watched_until_s[watches], self._watched_until_s[robot.settings.id]) > robot.t_s
@@ -96,7 +91,7 @@ class RobotTrial:
 
     def _begin_visit(self, robot: SurrogateLearner) -> None:
         robot.visits += 1
-        robot.abandon()
+        robot.learner.abandon()
         ends_s = robot.t_s + self._experiment.visits.duration_s + CARRIED_S
         self._due[robot.settings.id] = self._watched_until_s[robot.settings.watches] = ends_s
         robot.t_s = ends_s
@@ -106,10 +101,10 @@ class RobotTrial:
         ends_s = self._due.pop(robot.settings.id)
         began_s = ends_s - self._experiment.visits.duration_s - CARRIED_S / 2
         seen = longest_drive(self._robots[robot.settings.watches].shown, began_s, ends_s - CARRIED_S / 2)
-        true = window(seen, self._experiment.visits.moves, robot.copy_rng)
+        true = choose_window(seen, self._experiment.visits.moves, robot.copy_rng)
         copied = self._copies.drawn(true, robot.copy_rng) if true else ()
         if copied:
-            robot.remember(copied)
+            robot.learner.remember(ObservedPath(copied))
             self._copied.append(CopiedPath(robot.settings.id, robot.moves, true, copied))
         robot.begin_at_start(HEADING_AT_THE_START)
 
@@ -122,9 +117,3 @@ def longest_drive(shown: Iterable[ShownMoves], began_s: float, ended_s: float) -
             parts.setdefault(move.track, []).append(move.move)
     longest: list[Move] = max(parts.values(), key=lambda part: len(part), default=[])
     return tuple(longest)
-
-
-def window(moves: tuple[Move, ...], count: int, rng: np.random.Generator) -> tuple[Move, ...]:
-    """`count` consecutive moves at a random place; all of a shorter list."""
-    first = int(rng.integers(max(len(moves) - count, 0) + 1))
-    return moves[first : first + count]

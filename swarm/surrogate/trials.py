@@ -13,11 +13,11 @@ import numpy as np
 from swarm.analysis.learning_curves import interval
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
+from swarm.learning.learner import MOVES_BETWEEN_EVALUATIONS
 from swarm.parallel import workers
 from swarm.statistics.samples import Curves, average_of_learners
 from swarm.surrogate.copies import CopyStore, load_copies
 from swarm.surrogate.durations import Durations, load_durations
-from swarm.surrogate.robots import MOVES_BETWEEN_EVALUATIONS
 from swarm.surrogate.trial import CopiedPath, RobotTrial, TrialOutcome
 
 PAPER_TRIALS = 4

@@ -16,7 +16,8 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from robot_agent.imitation.copying import CopyProfile, NoCopy, copy_moves
+from robot_agent.imitation.copying import NoCopy, copy_moves
+from swarm.config.experiment import CopyProfile
 from swarm.geometry import Move
 from swarm.learning.alignment import edit_distance
 from tests.support.demonstrations import (

@@ -12,7 +12,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from robot_agent.imitation.copying import CopyProfile
+from swarm.config.experiment import CopyProfile
 from tests.benchmarks.copying import CHOOSE_MOVES, demonstrations, score
 from tests.support.demonstrations import Conditions
 

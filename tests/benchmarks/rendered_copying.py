@@ -23,7 +23,7 @@ from pathlib import Path
 
 from robot_agent.imitation.copying import NoCopy
 from robot_agent.offline.observation_session import observed_demonstrations, offline_experiment
-from swarm.config.experiment import Watching
+from swarm.config.experiment import CopyProfile
 from swarm.learning.alignment import edit_distance
 
 BARS = {
@@ -60,7 +60,7 @@ class Score:
 def score(condition: str, count: int, seed: int) -> Score:
     """Rehearse, and compare every copied list with the true one; no copy counts as an empty list."""
     profile, light, kind = condition.split("/")
-    experiment = offline_experiment(Watching(profile), light)
+    experiment = offline_experiment(CopyProfile(profile), light)
     edits, reasons = [], Counter[str]()
     wrong, seen = 0, 0.0
     began_s = time.process_time()

@@ -22,9 +22,10 @@ from robot_agent.drivers.sim.rendering.conditions import conditions
 from robot_agent.drivers.sim.rendering.scene import Post, Rectangle, Scene, SceneRobot
 from robot_agent.vision.camera_model import CameraModel, load_camera_model
 from robot_agent.vision.colour_calibration import learn_colour_table
-from robot_agent.vision.detector import PROFILES, Detection, Detector, NotSeen
+from robot_agent.vision.detector import MEASUREMENTS, Detection, Detector, NotSeen
 from robot_agent.vision.frames import Frame
 from robot_agent.vision.skirt import SKIRT_RADIUS_M, half_angle_rad
+from swarm.config.experiment import CopyProfile
 from swarm.geometry import Pose
 
 CALIBRATION = Path(__file__).parents[2] / "deploy" / "cameras" / "epuck_320x240.toml"
@@ -46,10 +47,10 @@ class Look:
 
 
 def make_pair(
-    profile: str, condition: str, skirt: str, seed: int, pixel_format: str = "rgb565"
+    profile: CopyProfile, condition: str, skirt: str, seed: int, pixel_format: str = "rgb565"
 ) -> tuple[SimulatedCamera, Detector]:
     """A camera and a detector whose colour table was learnt with that camera."""
-    model = load_camera_model(CALIBRATION).scaled(PROFILES[profile].width, PROFILES[profile].height)
+    model = load_camera_model(CALIBRATION).scaled(MEASUREMENTS[profile].width, MEASUREMENTS[profile].height)
     rng = np.random.default_rng(seed)
     camera = SimulatedCamera(model, conditions(condition), rng, pixel_format)
     frames = calibration_frames(camera, skirt, CALIBRATION_RANGES_M)
@@ -79,7 +80,7 @@ def look_at(
 
 
 def scattered(
-    profile: str, condition: str, skirt: str, frames: int, seed: int, pixel_format: str = "rgb565"
+    profile: CopyProfile, condition: str, skirt: str, frames: int, seed: int, pixel_format: str = "rgb565"
 ) -> Iterator[Look]:
     """Single frames: the demonstrator at 40 to 150 cm, at rest or moving, with another robot and a post."""
     for first in range(0, frames, FRAMES_OF_A_CAMERA):
@@ -121,7 +122,9 @@ def _apart(model: CameraModel, own: Pose, body: Pose, others: tuple[Pose, ...]) 
     return True
 
 
-def driving(profile: str, condition: str, skirt: str, frames: int, seed: int, twins: int) -> Iterator[Look]:
+def driving(
+    profile: CopyProfile, condition: str, skirt: str, frames: int, seed: int, twins: int
+) -> Iterator[Look]:
     """Drives at 10 cm/s and 5 frames a second among posts of the skirt's colour, the observer turning."""
     number = 0
     while number < frames:
@@ -212,7 +215,7 @@ def is_wrong(look: Look) -> bool:
     return off_range or abs(said.bearing_rad - look.bearing_rad) > math.radians(2) + 5 * said.bearing_sd_rad
 
 
-def cost_ms(profile: str, skirt: str, frames: int) -> float:
+def cost_ms(profile: CopyProfile, skirt: str, frames: int) -> float:
     """Processor time of a look: the shortest for each of some frames (other processes disturb the rest)."""
     camera, detector = make_pair(profile, "realistic", skirt, 1)
     rng = np.random.default_rng(2)
@@ -233,7 +236,7 @@ def cost_ms(profile: str, skirt: str, frames: int) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--frames", type=int, default=2000)
-    parser.add_argument("--profile", default="best", choices=sorted(PROFILES))
+    parser.add_argument("--profile", type=CopyProfile, default=CopyProfile.BEST, choices=list(CopyProfile))
     parser.add_argument("--conditions", default="realistic")
     parser.add_argument("--skirt", default="red")
     parser.add_argument("--format", default="rgb565")
@@ -243,7 +246,7 @@ def main() -> None:
     chosen = (options.profile, options.conditions, options.skirt, options.frames, options.seed)
     looks = list(scattered(*chosen, options.format))
     model = load_camera_model(CALIBRATION).scaled(
-        PROFILES[options.profile].width, PROFILES[options.profile].height
+        MEASUREMENTS[options.profile].width, MEASUREMENTS[options.profile].height
     )
     drives = list(driving(*chosen, twins=2))
     figures = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robot_agent.agent import Activity
+from robot_agent.activities import Finished
 from robot_agent.assembly import Assembly
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
@@ -27,8 +28,11 @@ TICK_NS = NS_PER_S // 10
 class Rig:
     """One learner at work; the test is its conductor."""
 
-    def __init__(self, directory: Path, moves: int = 1000) -> None:
+    def __init__(self, directory: Path, moves: int = 1000, *, watches: bool = False) -> None:
         experiment = Experiment.load(write_experiment(directory, experiment_text(learners(1), moves)))
+        if watches:
+            (robot,) = experiment.robot
+            experiment = replace(experiment, robot=(replace(robot, watches="r0"),))
         self.node = LocalNode()
         self.agent = Assembly(experiment, self.node, 0).agent("r0")
         self.compartment = experiment.compartment(experiment.robot[0])
@@ -47,6 +51,7 @@ class Rig:
         before = len(self.node.published)
         for _ in range(round(10 * seconds)):
             self.node.t_ns += TICK_NS
+            self.node.publish(topics.VIEW, pb.View(t_ns=self.node.t_ns), "r0")
             if phase is not None:
                 self.node.publish(topics.RUN_STATE, pb.RunState(phase=phase))
             self.agent.step(self.node.t_ns)
@@ -56,8 +61,8 @@ class Rig:
             (key, message) for key, message in self.node.published[before:] if key.startswith("robot/r0/")
         ]
 
-    def order(self, kind: pb.Order.Kind.ValueType) -> None:
-        self.node.publish(topics.ORDER, pb.Order(kind=kind), "r0")
+    def order(self, kind: pb.Order.Kind.ValueType, x_m: float = 0.0, y_m: float = 0.0) -> None:
+        self.node.publish(topics.ORDER, pb.Order(kind=kind, visit=1, x_m=x_m, y_m=y_m), "r0")
 
 
 def of(published: list[tuple[str, Any]], name: str) -> list[Any]:
@@ -131,11 +136,26 @@ def test_the_end_of_the_trial_stops_it(rig: Rig) -> None:
     assert of(ended, "move") == []
 
 
+def test_the_end_of_the_trial_stops_a_visit_too(tmp_path: Path) -> None:
+    """It watches from where it stands, sees nobody, and turns to look for the demonstrator."""
+    rig = Rig(tmp_path, watches=True)
+    rig.run(2, pb.RunState.PREPARING)
+    rig.order(pb.Order.WATCH, *rig.compartment.centre(0))
+    watching = rig.run(5)
+    assert [visit.phase for visit in of(watching, "visit")] == [pb.Visit.READY, pb.Visit.WATCHING]
+    assert of(watching, "status")[-1].activity == "visiting"
+    assert not stands(watching)
+    ended = rig.run(5, pb.RunState.ENDED)
+    assert stands(ended)
+    assert of(ended, "visit") == []
+    assert of(ended, "status")[-1].activity == "waiting"
+
+
 def test_it_finishes_after_its_moves(tmp_path: Path) -> None:
     rig = Rig(tmp_path, moves=7)
     published = rig.run(60)
     assert [move.number for move in of(published, "move")] == list(range(1, 8))
-    assert rig.agent.activity is Activity.FINISHED
+    assert isinstance(rig.agent.activity, Finished)
     assert stands(published)
 
 

@@ -18,11 +18,11 @@ def test_the_first_start_finds_nothing(tmp_path: Path) -> None:
 def test_what_was_saved_comes_back_and_the_newest_wins(tmp_path: Path) -> None:
     checkpoint = Checkpoint(tmp_path / "new", "r1", "run a")
     for state in (3, 4):
-        checkpoint.save({"state": state, "brain": {"q": [0.1 + 0.2, 1e-300]}})
+        checkpoint.save({"state": state, "policy": {"q": [0.1 + 0.2, 1e-300]}})
     saved = Checkpoint(tmp_path / "new", "r1", "run a").load()
     assert saved is not None
     assert saved["state"] == 4
-    assert saved["brain"]["q"] == [0.1 + 0.2, 1e-300], "floats survive to the last bit"
+    assert saved["policy"]["q"] == [0.1 + 0.2, 1e-300], "floats survive to the last bit"
     assert [path.name for path in (tmp_path / "new").iterdir()] == ["r1.json"]
 
 

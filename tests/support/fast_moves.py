@@ -8,21 +8,16 @@ from __future__ import annotations
 
 from collections import defaultdict
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from google.protobuf.message import Message
 
-from robot_agent.policies.learner import Learner
-from robot_agent.policies.policy import Transition
 from swarm.config.experiment import LearningSettings
 from swarm.geometry import MOVES, Grid, Move
 from swarm.learning.controller import Controller
+from swarm.learning.learner import Learner, Transition
 from swarm.learning.memory import ImitationMemory, ObservedPath
 from swarm.learning.q_table import QTable
 from swarm.learning.random import spawned_generator
-from swarm.messages import topics
-from swarm.messages.topics import Topic
 from tests.support.swarm_runs import messages
 
 GRID = Grid(10, 10)
@@ -76,17 +71,11 @@ class SurrogateRobot:
         memory = ImitationMemory(rules.beta, rules.approach, rules.capacity)
         controller = Controller(QTable(GRID.states), memory, rules.epsilon, generator("controller"))
         self.learner = Learner(
-            GRID,
-            controller,
-            generator("evaluation"),
-            self._publish,
-            moves_to_make=1,
-            path_length_cap=rules.path_length_cap,
-            discount_rate_per_s=rules.discount_rate_per_s,
+            GRID, controller, generator("evaluation"), rules.path_length_cap, rules.discount_rate_per_s
         )
         self.q = controller.q
         if given:
-            self.learner.remember(ObservedPath((Move.SE,) * 5), "given")
+            self.learner.remember(ObservedPath((Move.SE,) * 5))
         self._durations = durations
         self._blocked_move_s = rules.blocked_move_s
         self._rng = generator("durations")
@@ -98,13 +87,13 @@ class SurrogateRobot:
             state, heading = self._move(state, heading)
 
     def _move(self, state: int, heading: int) -> tuple[int, int]:
-        action = self.learner.choose(state)
+        action = self.learner.choose(state).action
         entered = GRID.neighbour(state, action)
         if entered is None:
-            self.learner.learn(Transition(state, action, state, self._blocked_move_s, True))
+            self._learn(Transition(state, action, state, self._blocked_move_s, True))
             return state, heading
         duration_s = self._drawn(kind_of(heading, action))
-        self.learner.learn(Transition(state, action, entered, duration_s, False))
+        self._learn(Transition(state, action, entered, duration_s, False))
         self.seconds.append(duration_s)
         return (GRID.start, HEADING_AFTER_THE_DRIVE_BACK) if entered == GRID.goal else (entered, action)
 
@@ -112,6 +101,7 @@ class SurrogateRobot:
         seen = self._durations[kind]
         return seen[int(self._rng.integers(len(seen)))]
 
-    def _publish(self, topic: Topic[Any], message: Message) -> None:
-        if topic is topics.BEST_PATH:
-            self.best_paths[message.move] = message.length  # type: ignore[attr-defined]
+    def _learn(self, transition: Transition) -> None:
+        move = self.learner.learn(transition)
+        if move.best_path_length is not None:
+            self.best_paths[move.number] = move.best_path_length

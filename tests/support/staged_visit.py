@@ -4,25 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
-from google.protobuf.message import Message
 
 from robot_agent.drivers.interfaces import Camera
 from robot_agent.drivers.kinematics import EpuckGeometry
 from robot_agent.imitation.visit import Eyes, Visit
 from robot_agent.offline.demonstrations import Demonstration, demonstrate
 from robot_agent.offline.observation_session import Stage, offline_experiment
+from robot_agent.reports import Reporter
 from swarm.config.experiment import Experiment
 from swarm.geometry import Move
 from swarm.learning.memory import ObservedPath
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.messages.topics import Topic
+from tests.support.local_node import LocalNode
 
 TICK_NS = 100_000_000
 MOVES = (Move.E, Move.SE, Move.SE, Move.S, Move.E)
+OBSERVER = "observer"
 VISIT = 3
 """The number of the visit, so that a wrong one would show."""
 
@@ -46,7 +46,7 @@ class StagedVisit:
     camera: Camera
     meddle: Callable[[int], None] = lambda _: None
     remembered: list[ObservedPath] = field(default_factory=list)
-    published: list[tuple[Topic[Any], Message]] = field(default_factory=list)
+    node: LocalNode = field(default_factory=LocalNode)
 
     def run(self) -> StagedVisit:
         """Until the visit is done; RuntimeError if it is not in half as much time again."""
@@ -54,7 +54,7 @@ class StagedVisit:
         order = pb.Order(
             kind=pb.Order.WATCH, visit=VISIT, x_m=place.x_m, y_m=place.y_m, theta_rad=place.theta_rad
         )
-        visit = Visit(order, self._eyes(settings), EpuckGeometry(), self._publish)
+        visit = Visit(order, self.eyes(settings), EpuckGeometry(), Reporter(self.node, OBSERVER))
         for tick in range(300):
             self.meddle(tick)
             t_ns = start_ns + tick * TICK_NS
@@ -68,22 +68,24 @@ class StagedVisit:
 
     @property
     def observation(self) -> pb.Observation:
-        found = [message for topic, message in self.published if topic is topics.OBSERVATION]
+        found = [message for key, message in self.node.published if key == topics.OBSERVATION.key(OBSERVER)]
         assert len(found) == 1
         assert isinstance(found[0], pb.Observation)
         return found[0]
 
     @property
     def phases(self) -> list[int]:
-        return [message.phase for topic, message in self.published if topic is topics.VISIT]  # type: ignore[attr-defined]
+        return [word.phase for word in self.words]
 
     @property
     def last_word(self) -> pb.Visit:
-        words = [message for topic, message in self.published if topic is topics.VISIT]
-        assert isinstance(words[-1], pb.Visit)
-        return words[-1]
+        return self.words[-1]
 
-    def _eyes(self, settings: Experiment) -> Eyes:
+    @property
+    def words(self) -> list[pb.Visit]:
+        return [message for key, message in self.node.published if key == topics.VISIT.key(OBSERVER)]
+
+    def eyes(self, settings: Experiment) -> Eyes:
         compartment = settings.compartment(settings.robot[0])
         return Eyes(
             self.camera,
@@ -100,9 +102,6 @@ class StagedVisit:
         assert visit == VISIT
         self.remembered.append(path)
         return 7
-
-    def _publish(self, topic: Topic[Any], message: Message) -> None:
-        self.published.append((topic, message))
 
 
 def staged(shown: Demonstration, seed: int = 6) -> StagedVisit:

@@ -9,7 +9,6 @@ import signal
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import TracebackType
 
 from tests.support.swarm_runs import ROOT, server_command
 
@@ -53,12 +52,7 @@ class WatchedServer:
         os.close(terminal_end)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.process.kill()
         self.process.communicate()
         for child in self.children.values():

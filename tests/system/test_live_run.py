@@ -127,7 +127,7 @@ def test_a_killed_agent_goes_on_from_its_checkpoint(swarm: LiveSwarm) -> None:
         found for found in swarm.received(topics.MOVE) if found[0].header.epoch not in first_epochs
     )
     assert move.number == moves_saved + 1, "it counts on"
-    before = saved["policy"]["q"][move.state][move.action]
+    before = saved["policy"]["controller"]["q"][move.state][move.action]
     assert move.q_value - move.q_change == pytest.approx(before, abs=1e-12), "it learns on"
     assert item.header.sequence == 1, "a restart shows in the log as a new epoch that counts from 1"
 

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, choose_window, copy_moves
+from robot_agent.imitation.copying import Copy, NoCopy, copy_moves
 from robot_agent.imitation.positions import ObservedPosition
+from swarm.config.experiment import CopyProfile
 from swarm.geometry import Move
 from tests.benchmarks.copying import BARS, demonstrations, score
 from tests.support.demonstrations import (
@@ -179,14 +180,6 @@ def test_the_same_positions_give_the_same_copy_in_any_order() -> None:
     shown = demonstration(rng, *random_moves(rng))
     shuffled = [shown.positions[i] for i in rng.permutation(len(shown.positions))]
     assert copied(replace(shown, positions=tuple(shuffled))) == copied(shown)
-
-
-def test_a_window_of_a_longer_track() -> None:
-    rng = np.random.default_rng(1)
-    windows = {choose_window(range(9), 5, rng) for _ in range(200)}
-    assert windows == {tuple(range(first, first + 5)) for first in range(5)}
-    assert choose_window([1, 2], 5, rng) == (1, 2)
-    assert choose_window([], 5, rng) == ()
 
 
 def test_the_experts_moves_end_before_the_goal_cell() -> None:

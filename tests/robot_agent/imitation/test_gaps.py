@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from robot_agent.imitation.copying import Copy, CopyProfile, NoCopy, copy_moves
+from robot_agent.imitation.copying import Copy, NoCopy, copy_moves
 from robot_agent.imitation.positions import ObservedPosition
+from swarm.config.experiment import CopyProfile
 from swarm.geometry import Move
 from tests.support.demonstrations import COMPARTMENT, Conditions, Demonstration, demonstration
 

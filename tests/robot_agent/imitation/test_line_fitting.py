@@ -7,9 +7,16 @@ import math
 import numpy as np
 import pytest
 
-from robot_agent.imitation.line_fitting import fit_line, fit_segments, merge, running_median, snap, split
-from robot_agent.imitation.positions import Floats, Trajectory
+from robot_agent.imitation.line_fitting import (
+    fit_line,
+    fit_segments,
+    merge,
+    running_median,
+    snap,
+    split_at_bends,
+)
 from robot_agent.imitation.segments import Segment
+from robot_agent.imitation.trajectory import Floats, Trajectory
 from swarm.geometry import Move
 
 CELL_M = 0.12
@@ -29,7 +36,7 @@ def trajectory(xy_m: Floats) -> Trajectory:
 
 
 def test_split_finds_the_corner() -> None:
-    assert split(corner(), 0.03) in ([0, 19, 29], [0, 20, 29])
+    assert split_at_bends(corner(), 0.03) in ([0, 19, 29], [0, 20, 29])
 
 
 def test_fit_is_the_total_least_squares_line_in_the_direction_of_travel() -> None:

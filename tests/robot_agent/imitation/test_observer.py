@@ -20,7 +20,7 @@ from robot_agent.offline.observation_session import (
 )
 from robot_agent.vision.detector import Detection
 from robot_agent.vision.frames import Frame
-from swarm.config.experiment import Watching
+from swarm.config.experiment import CopyProfile
 from swarm.geometry import Move, Pose, wrap_angle_rad
 
 TICK_NS = 100_000_000
@@ -175,7 +175,7 @@ def test_rendered_demonstrations_are_copied(kind: str) -> None:
 
 def test_the_papers_way_copies_worse() -> None:
     """Small frames, counted pixels and regression lines: many lists are wrong, and few are refused."""
-    experiment = offline_experiment(Watching.PAPER)
+    experiment = offline_experiment(CopyProfile.PAPER)
     shown = list(observed_demonstrations(experiment, "random", 20, seed=1))
     perfect = sum(each.copied_moves == tuple(map(int, each.demonstration.moves)) for each in shown)
     assert 0 < perfect < 20

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from robot_agent.imitation.demonstration import Place, demonstration_stops, find_stops
-from robot_agent.imitation.smoothing import Smoothed
+from robot_agent.imitation.demonstration import Place, find_stops, longest_demonstration
+from robot_agent.imitation.trajectory import SmoothedTrajectory
 from tests.robot_agent.imitation.test_stops import CELL_M, EAST, NORTH, REST, STOP, way
 
 BACK = (14.0, -0.08, 0.08)
 
 
-def shown(smoothed: Smoothed, start_m: Place | None = None) -> list[tuple[int, int]]:
-    stops = demonstration_stops(smoothed, find_stops(smoothed, CELL_M), CELL_M, start_m)
-    return [(stop.first, stop.last) for stop in stops]
+def shown(smoothed: SmoothedTrajectory, start_m: Place | None = None) -> list[tuple[int, int]]:
+    demonstration = longest_demonstration(find_stops(smoothed, CELL_M), CELL_M, start_m)
+    return [(stop.first, stop.last) for stop in demonstration.stops]
 
 
 def test_the_drive_back_is_left_out() -> None:

@@ -7,20 +7,20 @@ import math
 import numpy as np
 import pytest
 
-from robot_agent.imitation.demonstration import Stop
-from robot_agent.imitation.positions import Floats, Trajectory
-from robot_agent.imitation.segments import Vertex, find_vertices, from_chord, segments_between
-from robot_agent.imitation.smoothing import Smoothed
+from robot_agent.imitation.polyline import from_chord
+from robot_agent.imitation.segments import Vertex, find_vertices, segments_between
+from robot_agent.imitation.trajectory import Floats, SmoothedTrajectory, Stop, Trajectory
 
 CELL_M = 0.12
 
 
-def seen(xy_m: Floats) -> tuple[Trajectory, Smoothed]:
+def between_stops(xy_m: Floats) -> SmoothedTrajectory:
+    """With a stop at the first and at the last position."""
     frames = len(xy_m)
-    t_s = 0.2 * np.arange(frames, dtype=np.float64)
-    trajectory = Trajectory((t_s * 1e9).astype(np.int64), xy_m, np.tile(1e-4 * np.eye(2), (frames, 1, 1)))
-    velocity_m_s = np.zeros((frames, 2))
-    return trajectory, Smoothed(t_s, xy_m, velocity_m_s, np.tile(1e-4 * np.eye(4), (frames, 1, 1)))
+    t_ns, covariance_m2 = 200_000_000 * np.arange(frames), np.tile(1e-4 * np.eye(2), (frames, 1, 1))
+    seen = Trajectory(t_ns, xy_m, covariance_m2)
+    ends = (Stop(0, 0), Stop(frames - 1, frames - 1))
+    return SmoothedTrajectory(t_ns, xy_m, covariance_m2, seen, np.zeros((frames, 2)), ends)
 
 
 def line(start: tuple[float, float], end: tuple[float, float], frames: int = 8) -> Floats:
@@ -29,14 +29,14 @@ def line(start: tuple[float, float], end: tuple[float, float], frames: int = 8) 
 
 def test_a_corner_without_a_stop_is_a_bend() -> None:
     xy_m = np.concatenate((line((0, 0), (0.12, 0)), line((0.12, 0), (0.12, 0.12))))
-    vertices = find_vertices(*seen(xy_m), [Stop(0, 0), Stop(15, 15)], CELL_M)
+    vertices = find_vertices(between_stops(xy_m), CELL_M)
     assert [vertex.stopped for vertex in vertices] == [True, False, True]
     assert vertices[1].xy_m == pytest.approx([0.12, 0.0])
 
 
 def test_a_straight_drive_has_no_bend() -> None:
     xy_m = line((0, 0), (0.17, 0.17)) + np.random.default_rng(1).normal(0, 0.01, (8, 2))
-    assert len(find_vertices(*seen(xy_m), [Stop(0, 0), Stop(7, 7)], CELL_M)) == 2
+    assert len(find_vertices(between_stops(xy_m), CELL_M)) == 2
 
 
 def test_turns_and_lengths() -> None:

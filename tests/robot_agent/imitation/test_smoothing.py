@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robot_agent.imitation.positions import Floats, Trajectory
 from robot_agent.imitation.smoothing import ACCELERATION_NOISE_M2_S3, FIRST_SPEED_SD_M_S, smooth
+from robot_agent.imitation.trajectory import Floats, Trajectory
 
 
 def trajectory(xy_m: Floats, sd_m: float, period_s: float = 0.2) -> Trajectory:
@@ -33,7 +33,7 @@ def test_equals_the_batch_least_squares_solution() -> None:
     assert found.xy_m[:, 0] == pytest.approx(expected[0::2], abs=1e-9)
     assert found.velocity_m_s[:, 0] == pytest.approx(expected[1::2], abs=1e-8)
     variances = np.diag(np.linalg.inv(information))
-    assert found.covariance[:, 0, 0] == pytest.approx(variances[0::2])
+    assert found.covariance_m2[:, 0, 0] == pytest.approx(variances[0::2])
 
 
 def test_halves_the_error_of_a_standing_robot() -> None:

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from robot_agent.imitation.positions import Covariance, ObservedPosition, plausible_trajectory
+from robot_agent.imitation.outliers import plausible_trajectory
+from robot_agent.imitation.positions import Covariance, ObservedPosition
 
 ROUND: Covariance = ((1e-4, 0.0), (0.0, 1e-4))
 

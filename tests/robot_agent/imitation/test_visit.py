@@ -8,9 +8,18 @@ import pytest
 from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry
 from robot_agent.imitation.visit import Visit
 from robot_agent.offline.observation_session import Stage
+from robot_agent.reports import Reporter
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
-from tests.support.staged_visit import MOVES, TICK_NS, StagedVisit, demonstration, experiment, staged
+from tests.support.staged_visit import (
+    MOVES,
+    OBSERVER,
+    TICK_NS,
+    StagedVisit,
+    demonstration,
+    experiment,
+    staged,
+)
 
 
 @pytest.fixture(scope="module")
@@ -29,14 +38,13 @@ def test_what_was_copied_is_remembered_and_reported(done: StagedVisit) -> None:
     assert list(done.observation.window) == list(map(int, MOVES))
 
 
-def waiting_visit() -> tuple[Visit, list[pb.Visit]]:
-    """A visit that was just ordered, and what it says."""
+def waiting_visit() -> tuple[Visit, StagedVisit]:
+    """A visit that was just ordered, and whom it speaks to."""
     stage = Stage(experiment(), np.random.default_rng(1))
     scaffold = StagedVisit(stage, stage.camera)
-    said: list[pb.Visit] = []
     order = pb.Order(kind=pb.Order.WATCH, visit=1, x_m=1.25, y_m=-0.05, theta_rad=2.356)
-    eyes = scaffold._eyes(experiment())
-    return Visit(order, eyes, EpuckGeometry(), lambda _, message: said.append(message)), said  # type: ignore[arg-type]
+    reporter = Reporter(scaffold.node, OBSERVER)
+    return Visit(order, scaffold.eyes(experiment()), EpuckGeometry(), reporter), scaffold
 
 
 PLACE = Pose(1.25, -0.05, 2.356)
@@ -55,9 +63,9 @@ def poses(visit: Visit, *stands: tuple[Pose | None, int]) -> None:
 def test_it_does_not_watch_before_it_has_stood_at_its_place_for_a_second() -> None:
     visit, said = waiting_visit()
     poses(visit, (None, 20), (BESIDE, 40), (PLACE, 10))
-    assert [word.phase for word in said] == [pb.Visit.READY]
+    assert said.phases == [pb.Visit.READY]
     visit.step(PLACE, 70 * TICK_NS)
-    assert [word.phase for word in said] == [pb.Visit.READY, pb.Visit.WATCHING]
+    assert said.phases == [pb.Visit.READY, pb.Visit.WATCHING]
 
 
 def test_the_second_begins_anew_when_the_robot_is_carried_on() -> None:
@@ -65,7 +73,7 @@ def test_the_second_begins_anew_when_the_robot_is_carried_on() -> None:
     poses(visit, (PLACE, 9), (BESIDE, 1), (PLACE, 9))
     visit.displaced()
     visit.step(PLACE, 19 * TICK_NS)
-    assert [word.phase for word in said] == [pb.Visit.READY]
+    assert said.phases == [pb.Visit.READY]
 
 
 def test_a_visit_that_is_done_turns_no_wheel() -> None:

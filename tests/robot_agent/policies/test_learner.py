@@ -8,16 +8,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from google.protobuf.message import Message
 
-from robot_agent.policies.learner import Learner
-from robot_agent.policies.policy import Transition
+from robot_agent.policies.learner import LearningPolicy
+from robot_agent.reports import Reporter
 from swarm.geometry import Grid, Move
 from swarm.learning.controller import Controller
+from swarm.learning.learner import Learner, Transition
 from swarm.learning.memory import Approach, ImitationMemory, ObservedPath
 from swarm.learning.q_table import QTable
 from swarm.messages import topics
 from swarm.messages.topics import Topic
+from tests.support.local_node import LocalNode
 
 GRID = Grid(4, 4)
 PATHS = (ObservedPath((Move.SE,) * 3), ObservedPath((Move.E, Move.S)), ObservedPath((Move.N, Move.N)))
@@ -34,28 +35,20 @@ class Rig:
         moves: int = 1000,
         evaluation_seed: int = 2,
     ) -> None:
-        self.said: list[tuple[Topic[Any], Any]] = []
+        self.node = LocalNode()
         self.q = QTable(GRID.states)
         memory = ImitationMemory(0.8, Approach.AVERAGE_Q, capacity=3)
         rng, evaluation_rng = np.random.default_rng(seed), np.random.default_rng(evaluation_seed)
         self.controller = Controller(self.q, memory, 0.1, rng)
-        self.learner = Learner(
-            GRID,
-            self.controller,
-            evaluation_rng,
-            self._publish,
-            moves_to_make=moves,
-            path_length_cap=50,
-            discount_rate_per_s=0.149,
+        learner = Learner(
+            GRID, self.controller, evaluation_rng, path_length_cap=50, discount_rate_per_s=0.149
         )
+        self.learner = LearningPolicy(learner, moves, Reporter(self.node, "r1"))
         for path in paths:
             self.learner.remember(path, "given")
 
-    def _publish(self, topic: Topic[Any], message: Message) -> None:
-        self.said.append((topic, message))
-
     def of(self, topic: Topic[Any]) -> list[Any]:
-        return [message for said, message in self.said if said is topic]
+        return [message for key, message in self.node.published if key == topic.key("r1")]
 
     def walk(self, state: int, moves: int) -> int:
         """Moves of 2 or 3 s through the grid; the last state."""
@@ -131,17 +124,17 @@ def test_a_learner_goes_on_from_its_snapshot_bit_for_bit() -> None:
         snapshot = json.loads(json.dumps(first.learner.snapshot()))
         second = Rig(1234)
         second.learner.restore(snapshot)
-        second.said = first.said
+        second.node.published[:0] = first.node.published
         first = second
     first.walk(state, 400 - 157)
     assert first.q.values == whole.q.values
-    assert [message for _, message in first.said] == [message for _, message in whole.said]
+    assert first.node.published == whole.node.published
     assert (first.learner.moves, first.learner.tracks) == (400, whole.learner.tracks)
 
 
 def test_a_snapshot_of_another_grid_is_refused() -> None:
     snapshot = Rig().learner.snapshot()
-    snapshot["q"] = snapshot["q"][:-1]
+    snapshot["controller"]["q"].pop()
     with pytest.raises(ValueError, match="15 states; the grid has 16"):
         Rig().learner.restore(snapshot)
 

@@ -53,15 +53,15 @@ def test_the_camera_sits_ahead_of_the_turning_axis() -> None:
     ("line", "wrong", "said"),
     [
         ("width = 320", "widht = 320", "did you mean 'width'"),
-        ("height = 240", "", "[image] height is missing"),
-        ("height = 240", 'height = "240"', "is not a number"),
+        ("height = 240", "", "'height' is missing in [image]"),
+        ("height = 240", 'height = "240"', "is a whole number, not"),
         ("height = 240", "height = 241", "even"),
-        ("radial = [-0.08, 0.01]", "radial = [-0.08]", "two numbers"),
+        ("radial = [-0.08, 0.01]", "radial = [-0.08]", "has 1 values; it takes 2"),
         ("radial = [-0.08, 0.01]", "radial = [-5.0, 0.0]", "fold"),
-        ("gamma = 2.2", "gamma = nan", "not finite"),
+        ("gamma = 2.2", "gamma = nan", "a finite number is wanted"),
         ("gamma = 2.2", "gamma = 0.0", "gamma must be"),
         ("[mounting]", "[mountings]", "did you mean 'mounting'"),
-        ("[mounting]", "mounting = ", "camera calibration"),
+        ("[mounting]", "mounting = ", "not valid TOML"),
     ],
 )
 def test_a_bad_file_is_refused_by_name_and_field(line: str, wrong: str, said: str, tmp_path: Path) -> None:

@@ -13,10 +13,10 @@ import pytest
 from robot_agent.drivers.sim.rendering.camera import SimulatedCamera
 from robot_agent.drivers.sim.rendering.scene import Post, Rectangle, Scene, SceneRobot
 from robot_agent.vision.camera_model import load_camera_model
-from robot_agent.vision.colour_table import ColourTable
 from robot_agent.vision.detector import Detection, Detector, NotSeen, Reason
 from robot_agent.vision.frames import Frame
 from robot_agent.vision.skirt import half_angle_rad
+from swarm.config.experiment import CopyProfile
 from swarm.errors import UserError
 from swarm.geometry import Pose
 from tests.benchmarks.seeing import CALIBRATION, accuracy, driving, is_wrong, make_pair, scattered
@@ -29,7 +29,7 @@ STEP_NS = 200_000_000
 
 @pytest.fixture(scope="module")
 def pair() -> tuple[SimulatedCamera, Detector]:
-    return make_pair("best", "realistic", "red", 11)
+    return make_pair(CopyProfile.BEST, "realistic", "red", 11)
 
 
 @pytest.fixture
@@ -73,7 +73,7 @@ def detection(answer: Detection | NotSeen) -> Detection:
 
 @pytest.mark.parametrize(("skirt", "pixel_format"), [("red", "rgb565"), ("blue", "yuyv")])
 def test_range_and_bearing_are_within_the_bounds(skirt: str, pixel_format: str) -> None:
-    figures = accuracy(list(scattered("best", "realistic", skirt, 200, 3, pixel_format)), MODEL)
+    figures = accuracy(list(scattered(CopyProfile.BEST, "realistic", skirt, 200, 3, pixel_format)), MODEL)
     assert figures["answered_by_both_edges"] >= 0.99
     assert figures["width_sd_px"] <= 0.2
     assert figures["range_k_per_cm"] <= 1e-4
@@ -83,13 +83,13 @@ def test_range_and_bearing_are_within_the_bounds(skirt: str, pixel_format: str) 
 
 
 def test_posts_of_the_skirts_colour_are_seldom_taken_for_it() -> None:
-    looks = list(driving("best", "realistic", "red", 300, 5, twins=2))
+    looks = list(driving(CopyProfile.BEST, "realistic", "red", 300, 5, twins=2))
     assert sum(is_wrong(look) for look in looks) <= 0.005 * len(looks)
     assert sum(isinstance(look.said, Detection) for look in looks) >= 0.8 * len(looks)
 
 
 def test_the_papers_profile_counts_pixels_and_says_how_unsure_it_is() -> None:
-    looks = list(scattered("paper", "realistic", "red", 150, 3))
+    looks = list(scattered(CopyProfile.PAPER, "realistic", "red", 150, 3))
     figures = accuracy(looks, MODEL.scaled(160, 120))
     assert figures["answered"] >= 0.93
     assert 3e-4 <= figures["range_k_per_cm"] <= 9e-4
@@ -170,7 +170,7 @@ def test_the_gate_follows_the_observers_own_turn(camera: SimulatedCamera, detect
 
 
 def test_lights_off(detector: Detector) -> None:
-    dark, _ = make_pair("best", "realistic", "red", 12)
+    dark, _ = make_pair(CopyProfile.BEST, "realistic", "red", 12)
     black = Frame(0, 320, 240, "rgb565", bytes(320 * 240 * 2))
     assert reason(detector.look(black)) is Reason.DARK
     assert detection(detector.look(frame(dark, body(0.5, 0)))).range_m == pytest.approx(0.5, abs=0.02)
@@ -191,7 +191,7 @@ def test_half_of_the_robot_outside_the_image_is_a_coarse_sighting(
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_counted_pixels_say_nothing_of_a_robot_that_is_cut_off(side: int) -> None:
-    camera, detector = make_pair("paper", "realistic", "red", 11)
+    camera, detector = make_pair(CopyProfile.PAPER, "realistic", "red", 11)
     answer = detection(detector.look(frame(camera, body(0.4, 25.0 * side))))
     assert answer.cut_off
     visible_rad = math.radians(25.0 * side) - side * half_angle_rad(0.4)
@@ -226,12 +226,6 @@ def test_a_robot_behind_a_post_between_both_edges_is_hidden(
 def test_a_frame_of_another_size_is_refused(detector: Detector) -> None:
     with pytest.raises(UserError, match="gives 160 x 120 frames, the profile needs 320 x 240"):
         detector.look(Frame(0, 160, 120, "rgb565", bytes(160 * 120 * 2)))
-
-
-def test_a_profile_that_is_not_known_is_named() -> None:
-    table = ColourTable("red", np.zeros(1 << 16, dtype=np.uint8), 1)
-    with pytest.raises(UserError, match="did you mean 'paper'"):
-        Detector("papers", MODEL, table)
 
 
 def test_any_bytes_give_an_answer(detector: Detector) -> None:

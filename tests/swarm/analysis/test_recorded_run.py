@@ -25,7 +25,9 @@ def analysis(small_run: SmallRun, tmp_path_factory: pytest.TempPathFactory) -> A
 
 def test_tables_are_read_lazily(small_run: SmallRun) -> None:
     run = swarm.open_run(small_run.directory)
-    moves = run.table("moves").filter(robot="loner").select("number").collect()
+    moves = (
+        swarm.open_run(small_run.directory).table("moves").filter(robot="loner").select("number").collect()
+    )
     assert moves["number"].to_list() == list(range(1, 31))
     poses = run.table("poses").select(pl.len()).collect().item()
     assert poses == sum(1 for _ in messages(small_run.log, "pose"))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from swarm.geometry import Move
-from swarm.learning.memory import Approach, ImitationMemory, ObservedPath
+from swarm.learning.memory import Approach, ImitationMemory, ObservedPath, choose_window
 
 SE, E, S = (ObservedPath((move,) * 5) for move in (Move.SE, Move.E, Move.S))
 
@@ -67,3 +67,11 @@ def test_a_path_is_parsed_from_compass_names() -> None:
         ObservedPath.parse(["SE", "SX"])
     with pytest.raises(ValueError, match="none"):
         ObservedPath.parse([])
+
+
+def test_a_window_of_a_longer_track() -> None:
+    rng, moves = np.random.default_rng(1), (*Move, Move.E)
+    windows = {choose_window(moves, 5, rng) for _ in range(200)}
+    assert windows == {moves[first : first + 5] for first in range(5)}
+    assert choose_window((Move.S, Move.W), 5, rng) == (Move.S, Move.W)
+    assert choose_window((), 5, rng) == ()

@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
-from google.protobuf.message import Message
 
-from robot_agent.policies.learner import Learner
-from robot_agent.policies.policy import Transition
-from swarm.config.experiment import Experiment
-from swarm.geometry import Grid, Move
-from swarm.learning.controller import Controller
-from swarm.learning.memory import ImitationMemory
-from swarm.learning.q_table import QTable
+from robot_agent.policies.learner import LearningPolicy
+from robot_agent.reports import Reporter
+from swarm.config.experiment import Experiment, RobotSettings
+from swarm.geometry import Move
+from swarm.learning.learner import Transition
 from swarm.messages import topics
-from swarm.messages.topics import Topic
 from swarm.surrogate.copies import CopyPair, CopyStore
 from swarm.surrogate.durations import KINDS, Durations
 from swarm.surrogate.robots import ShownMoves, SurrogateLearner
-from swarm.surrogate.trial import RobotTrial, longest_drive, window
+from swarm.surrogate.trial import RobotTrial, longest_drive
+from tests.support.local_node import LocalNode
 from tests.support.swarm_runs import ROOT
 
 DURATIONS = Durations({kind: [2.0, 2.5] if "turn" in kind else [20.0] for kind in KINDS})
@@ -41,11 +38,9 @@ class Recorded(SurrogateLearner):
         super().__init__(*arguments)
         self.transitions: list[Transition] = []
 
-    def learn(
-        self, state: int, action: int, next_state: int, duration_s: float, *, blocked: bool, arrived: bool
-    ) -> None:
-        super().learn(state, action, next_state, duration_s, blocked=blocked, arrived=arrived)
-        self.transitions.append(Transition(state, action, next_state, duration_s, blocked))
+    def learn(self, transition: Transition) -> None:
+        super().learn(transition)
+        self.transitions.append(transition)
 
 
 def test_it_decides_and_learns_as_a_robot_does() -> None:
@@ -55,39 +50,24 @@ def test_it_decides_and_learns_as_a_robot_does() -> None:
     fast = Recorded(experiment, settings, DURATIONS, 3)
     for _ in range(400):
         fast.move()
-    robot, best_paths, controller = robot_learner(experiment, fast)
+    robot, node = robot_policy(experiment, settings)
     for transition in fast.transitions:
         assert robot.choose(transition.state) == transition.action
         robot.learn(transition)
-    assert controller.q.values == fast.controller.q.values
+    best_paths = [message.length for key, message in node.published if key == topics.BEST_PATH.key("loner")]
     assert best_paths == fast.best_paths
-    assert any(max(row) > 0 for row in controller.q.values), "it did reach the goal"
-    counts = [(each.n_replicated, each.n_q_plus) for each in controller.memory.remembered]
-    assert counts == [(each.n_replicated, each.n_q_plus) for each in fast.memory.remembered]
+    learnt = json.dumps(robot.snapshot())
+    assert learnt == json.dumps(fast.learner.snapshot()), "table, memory, counts and random numbers to come"
+    assert any(max(row) > 0 for row in robot.snapshot()["controller"]["q"]), "it did reach the goal"
 
 
-def robot_learner(experiment: Experiment, fast: SurrogateLearner) -> tuple[Learner, list[int], Controller]:
-    rules, best_paths = experiment.learning, list[int]()
-
-    def publish(topic: Topic[Any], message: Message) -> None:
-        if topic is topics.BEST_PATH:
-            best_paths.append(message.length)  # type: ignore[attr-defined]
-
-    grid = Grid(10, 10)
-    memory = ImitationMemory(rules.beta, rules.approach, rules.capacity)
-    controller = Controller(QTable(grid.states), memory, rules.epsilon, fast.generator("controller"))
-    learner = Learner(
-        grid,
-        controller,
-        fast.generator("evaluation"),
-        publish,
-        moves_to_make=experiment.run.moves,
-        path_length_cap=rules.path_length_cap,
-        discount_rate_per_s=rules.discount_rate_per_s,
-    )
-    for path in fast.settings.given_paths():
-        learner.remember(path, "given")
-    return learner, best_paths, controller
+def robot_policy(experiment: Experiment, settings: RobotSettings) -> tuple[LearningPolicy, LocalNode]:
+    node = LocalNode()
+    learner = experiment.learner(settings, 3)
+    policy = LearningPolicy(learner, experiment.run.moves, Reporter(node, settings.id))
+    for path in settings.given_paths():
+        policy.remember(path, "given")
+    return policy, node
 
 
 def test_a_learner_copies_its_expert_until_its_memory_is_full() -> None:
@@ -129,14 +109,6 @@ def test_only_moves_wholly_in_view_are_seen_and_of_one_journey() -> None:
     seen += [shown(Move.W, 36.0, 1), shown(Move.NW, 39.5, 1)]
     assert longest_drive(seen, 10.0, 41.0) == (Move.E, Move.S)
     assert longest_drive(seen, 50.0, 60.0) == ()
-
-
-@pytest.mark.parametrize("count", [3, 5])
-def test_a_window_is_consecutive_and_anywhere(count: int) -> None:
-    moves = tuple(Move(number) for number in range(5))
-    rng = np.random.default_rng(1)
-    found = {window(moves, count, rng) for _ in range(100)}
-    assert found == {moves[first : first + count] for first in range(6 - count)}
 
 
 def test_the_deployed_stores_can_be_read() -> None:
