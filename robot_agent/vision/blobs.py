@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
@@ -14,6 +15,8 @@ MIN_FILL = 0.6
 """Chosen: a disc fills 0.79 of its box and a skirt nearly all; two things that touch fill less."""
 USUAL_PART = 0.2
 """Of the height; chosen: columns that differ more from the median column are no part of a skirt."""
+OUTLINE_ASIDE = 0.15
+"""Of the width, at each side; chosen: there the rims are bent most, and the blur rounds the corners."""
 RAGGED_PX = 2
 """Blur and noise leave so many uneven columns at each side."""
 
@@ -73,16 +76,43 @@ def _longest_run(true: NDArray[np.bool_]) -> tuple[int, int]:
     return int(starts[longest]), int(ends[longest])
 
 
-def blobs_at_horizon(mask: NDArray[np.uint8], horizon_row: float, slack_px: float) -> list[Blob]:
+def blobs_at_horizon(
+    mask: NDArray[np.uint8],
+    horizon_row: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    slack_px: float,
+) -> list[Blob]:
     """The patches of non-zero pixels that are large and reach across the horizon, the largest first.
 
-    The horizon may be `slack_px` higher or lower than `horizon_row`.
+    `horizon_row` tells the horizon's rows of columns; it may be `slack_px` higher or lower.
     """
     _, _, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8, ltype=cv2.CV_16U)
-    tops, heights, areas = (stats[1:, i] for i in (cv2.CC_STAT_TOP, cv2.CC_STAT_HEIGHT, cv2.CC_STAT_AREA))
-    across = (tops <= horizon_row + slack_px) & (tops + heights > horizon_row - slack_px)
-    keep = across & (areas >= MIN_AREA_PART * mask.size)
-    rows = stats[1:][keep].tolist()
+    stats = stats[1:][stats[1:, cv2.CC_STAT_AREA] >= MIN_AREA_PART * mask.size]
+    lefts, widths = stats[:, cv2.CC_STAT_LEFT], stats[:, cv2.CC_STAT_WIDTH]
+    tops, heights = stats[:, cv2.CC_STAT_TOP], stats[:, cv2.CC_STAT_HEIGHT]
+    horizon = horizon_row(lefts + (widths - 1) / 2)
+    across = (tops <= horizon + slack_px) & (tops + heights > horizon - slack_px)
+    rows = stats[across].tolist()
     found = [Blob(left, top, left + wide, top + high, area) for left, top, wide, high, area in rows]
     found = [trimmed(blob, mask) for blob in found]
     return sorted(found, key=lambda blob: blob.area, reverse=True)
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A patch's height, and the line along its middle: its row at the middle column, and its slope."""
+
+    height_px: float
+    middle_row: float
+    slope: float
+
+
+def outline(blob: Blob, mask: NDArray[np.uint8]) -> Outline:
+    """Taken from the middle columns; holes (a highlight, an opening) do not matter."""
+    aside = int(blob.width * OUTLINE_ASIDE)
+    columns = mask[blob.top : blob.bottom, blob.left + aside : blob.right - aside] != 0
+    firsts = columns.argmax(axis=0)
+    lasts = blob.height - 1 - columns[::-1].argmax(axis=0)
+    middles, places = (firsts + lasts) / 2, np.arange(columns.shape[1]) - (columns.shape[1] - 1) / 2
+    slope = float(places @ middles / max(places @ places, 1.0))
+    middle = float(np.median(middles - slope * places))
+    return Outline(float(np.median(lasts - firsts)) + 1, blob.top + middle, slope)

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robot_agent.vision.demonstrator import Demonstrator, Hat, Skirt
 from swarm.config.toml_files import ConfigFile
 from swarm.errors import UserError
 from swarm.geometry import Pose
@@ -101,6 +102,13 @@ class CameraModel:
         right, _ = self.slopes(column, self.horizon_row)
         return -math.atan(float(right))
 
+    def level_bearing_rad(self, column: float, row: float, pitch_rad: float, roll_rad: float) -> float:
+        """The direction that a pixel looks at, of a camera that is tilted (see `Tilt`)."""
+        right, up = (float(slope) for slope in self.slopes(column, row))
+        level_right = right * math.cos(roll_rad) - up * math.sin(roll_rad)
+        level_up = right * math.sin(roll_rad) + up * math.cos(roll_rad)
+        return -math.atan2(level_right, math.cos(pitch_rad) - level_up * math.sin(pitch_rad))
+
     def column(self, bearing_rad: float) -> float:
         """The column at which the horizon has this bearing: the inverse of `bearing_rad`."""
         k1, k2 = self.radial
@@ -148,12 +156,31 @@ class MountingSettings:
 
 
 @dataclass(frozen=True)
+class LightSettings:
+    """[light]: a white wall's linear red, green and blue (parts of full scale) at calibration."""
+
+    white: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
 class CalibrationFile:
-    """A calibration file (deploy/cameras/*.toml); every field of it must be there."""
+    """A calibration file (deploy/cameras/*.toml): a camera, and the demonstrator that it watches.
+
+    The three tables of the camera must be there; `robot-agent calibrate` adds those of the demonstrator.
+    """
 
     image: ImageSettings
     lens: LensSettings
     mounting: MountingSettings
+    skirt: Skirt | None = None
+    hat: Hat | None = None
+    light: LightSettings | None = None
+
+    def demonstrator(self) -> Demonstrator | None:
+        """None if the file tells only of the camera, or of a skirt's size but not of its colour."""
+        if self.skirt is None or self.light is None:
+            return None
+        return Demonstrator(self.skirt, self.hat, self.light.white)
 
     def model(self) -> CameraModel:
         """ValueError if no camera is like this."""
@@ -171,10 +198,16 @@ class CalibrationFile:
         )
 
 
-def load_camera_model(path: Path | str) -> CameraModel:
+def load_calibration(path: Path | str) -> CalibrationFile:
     """Read a calibration file; UserError names the file and what is wrong with it."""
-    calibration = ConfigFile(Path(path)).settings(CalibrationFile)
     try:
-        return calibration.model()
+        calibration = ConfigFile(Path(path)).settings(CalibrationFile)
+        calibration.model()
     except ValueError as error:
         raise UserError(f"camera calibration {path}: {error}") from error
+    return calibration
+
+
+def load_camera_model(path: Path | str) -> CameraModel:
+    """The camera of a calibration file; UserError names the file and what is wrong with it."""
+    return load_calibration(path).model()

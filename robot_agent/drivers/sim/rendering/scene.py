@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_agent.vision.skirt import SKIRT_BOTTOM_M, SKIRT_RADIUS_M, SKIRT_TOP_M
+from robot_agent.vision.demonstrator import SKIRT_BOTTOM_M, SKIRT_RADIUS_M, SKIRT_TOP_M
 from swarm.errors import UserError, nearest
 from swarm.geometry import Pose
 
