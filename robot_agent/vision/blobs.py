@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -15,8 +16,8 @@ MIN_FILL = 0.6
 """Chosen: a disc fills 0.79 of its box and a skirt nearly all; two things that touch fill less."""
 USUAL_PART = 0.2
 """Of the height; chosen: columns that differ more from the median column are no part of a skirt."""
-OUTLINE_ASIDE = 0.15
-"""Of the width, at each side; chosen: there the rims are bent most, and the blur rounds the corners."""
+NOISY_COLUMNS = np.ones((1, 5), np.uint8)
+"""Up to four columns in a row that differ, with a skirt at either side, are noise in them."""
 RAGGED_PX = 2
 """Blur and noise leave so many uneven columns at each side."""
 
@@ -55,15 +56,21 @@ def trimmed(blob: Blob, mask: NDArray[np.uint8]) -> Blob:
     columns = mask[blob.top : blob.bottom, blob.left : blob.right]
     counts = columns.sum(axis=0, dtype=np.int32)
     middles = np.arange(blob.height) @ columns / np.maximum(counts, 1)
-    usual = np.abs(counts - np.median(counts)) <= 1.5 + USUAL_PART * blob.height
-    usual &= np.abs(middles - np.median(middles)) <= 1.0 + USUAL_PART / 2 * blob.height
-    first, last = _longest_run(usual)
+    usual = np.abs(counts - median(counts)) <= 1.5 + USUAL_PART * blob.height
+    usual &= np.abs(middles - median(middles)) <= 1.0 + USUAL_PART / 2 * blob.height
+    bridged = cv2.morphologyEx(usual.view(np.uint8)[np.newaxis], cv2.MORPH_CLOSE, NOISY_COLUMNS)[0] != 0
+    first, last = _longest_run(bridged)
     first, last = first if first > RAGGED_PX else 0, last if blob.width - last > RAGGED_PX else blob.width
     if last - first in (blob.width, 0) or first > last:
         return blob
     rows = np.flatnonzero(columns[:, first:last].any(axis=1))
     top, bottom = blob.top + int(rows[0]), blob.top + int(rows[-1]) + 1
     return Blob(blob.left + first, top, blob.left + last, bottom, int(counts[first:last].sum()))
+
+
+def median(values: NDArray[np.number[Any]]) -> float:
+    """The upper one of the two middle values, if they are two; NumPy's own takes five times as long."""
+    return float(np.sort(values)[values.size // 2])
 
 
 def _longest_run(true: NDArray[np.bool_]) -> tuple[int, int]:
@@ -95,24 +102,3 @@ def blobs_at_horizon(
     found = [Blob(left, top, left + wide, top + high, area) for left, top, wide, high, area in rows]
     found = [trimmed(blob, mask) for blob in found]
     return sorted(found, key=lambda blob: blob.area, reverse=True)
-
-
-@dataclass(frozen=True)
-class Outline:
-    """A patch's height, and the line along its middle: its row at the middle column, and its slope."""
-
-    height_px: float
-    middle_row: float
-    slope: float
-
-
-def outline(blob: Blob, mask: NDArray[np.uint8]) -> Outline:
-    """Taken from the middle columns; holes (a highlight, an opening) do not matter."""
-    aside = int(blob.width * OUTLINE_ASIDE)
-    columns = mask[blob.top : blob.bottom, blob.left + aside : blob.right - aside] != 0
-    firsts = columns.argmax(axis=0)
-    lasts = blob.height - 1 - columns[::-1].argmax(axis=0)
-    middles, places = (firsts + lasts) / 2, np.arange(columns.shape[1]) - (columns.shape[1] - 1) / 2
-    slope = float(places @ middles / max(places @ places, 1.0))
-    middle = float(np.median(middles - slope * places))
-    return Outline(float(np.median(lasts - firsts)) + 1, blob.top + middle, slope)

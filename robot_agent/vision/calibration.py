@@ -148,7 +148,8 @@ def _learnt(
         raise UserError(f"what has a skirt's shape has no colour of its own: {_ADVICE}")
     spread_rad = float(np.std(np.angle(around / middle)))
     tolerance_rad = round(float(np.clip(HUE_DEVIATIONS * spread_rad, *HUE_TOLERANCE_RAD)), 3)
-    above = np.median([_above(look, model, skirt, light, white) for look in looks], axis=0)
+    nearest = sorted(looks, key=lambda look: look[1].range_m)[: (len(looks) + 1) // 2]
+    above = np.median([_above(look, model, skirt, light, white) for look in nearest], axis=0)
     learnt = replace(skirt, colour=_colour(colour), hue_tolerance_rad=tolerance_rad)
     return Demonstrator(learnt, Hat(_colour(above)), white)
 

@@ -22,6 +22,9 @@ from swarm.geometry import Pose
 NEWTON_STEPS = 8
 """More than enough: the error squares at every step, and no lens bends by more than `_bends_gently`."""
 
+EXACT = 1e-12
+"""Of a focal length; far below the rounding of pixels."""
+
 
 @dataclass(frozen=True)
 class CameraModel:
@@ -94,6 +97,8 @@ class CameraModel:
         radius = bent.copy()
         for _ in range(NEWTON_STEPS):
             error = radius * (1 + k1 * radius**2 + k2 * radius**4) - bent
+            if float(np.max(np.abs(error), initial=0.0)) < EXACT:
+                break
             radius -= error / (1 + 3 * k1 * radius**2 + 5 * k2 * radius**4)
         return np.divide(radius, bent, out=np.ones_like(bent), where=bent > 0)
 
@@ -102,12 +107,15 @@ class CameraModel:
         right, _ = self.slopes(column, self.horizon_row)
         return -math.atan(float(right))
 
-    def level_bearing_rad(self, column: float, row: float, pitch_rad: float, roll_rad: float) -> float:
-        """The direction that a pixel looks at, of a camera that is tilted (see `Tilt`)."""
-        right, up = (float(slope) for slope in self.slopes(column, row))
+    def level_bearings_rad(
+        self, columns: ArrayLike, rows: ArrayLike, pitch_rad: float, roll_rad: float
+    ) -> list[float]:
+        """The directions that pixels look at, of a camera that is tilted (see `Tilt`)."""
+        right, up = self.slopes(columns, rows)
         level_right = right * math.cos(roll_rad) - up * math.sin(roll_rad)
         level_up = right * math.sin(roll_rad) + up * math.cos(roll_rad)
-        return -math.atan2(level_right, math.cos(pitch_rad) - level_up * math.sin(pitch_rad))
+        ahead = math.cos(pitch_rad) - level_up * math.sin(pitch_rad)
+        return [float(bearing) for bearing in -np.arctan2(level_right, ahead)]
 
     def column(self, bearing_rad: float) -> float:
         """The column at which the horizon has this bearing: the inverse of `bearing_rad`."""

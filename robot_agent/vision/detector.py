@@ -8,7 +8,7 @@ it was last.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import cv2
@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_agent.vision.association import Association, Place
-from robot_agent.vision.blobs import Blob, Outline, blobs_at_horizon, outline
+from robot_agent.vision.blobs import Blob, blobs_at_horizon
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.demonstrator import Demonstrator
 from robot_agent.vision.edges import Edge, EdgeFinder
 from robot_agent.vision.frames import Frame
+from robot_agent.vision.outline import Outline, lit_outline, outline
 from robot_agent.vision.pixels import Words, frame_words, word_colours
 from robot_agent.vision.skirt import (
     Covariance,
@@ -51,6 +52,8 @@ HEIGHT_SD_PX = 1.5
 """Chosen: pitch, body and shadow move a patch's upper and lower border by a pixel or so each."""
 MIN_WIDTH_PX = 4
 """Chosen: narrower than a skirt anywhere in the arena (15 pixels at 1.55 m, half at 160 x 120)."""
+GROWN_PX = 0.7
+"""How much higher than the skirt its pixels are: body and shadow do not bound it as white wall does."""
 LIKE_PART = 0.15
 """Chosen: of the columns beside a patch; more of the skirt's colour there is another thing close by."""
 DARK_LIGHT = 0.03
@@ -117,11 +120,18 @@ class PatchMeasurement:
     sub_pixel: bool
     edge_sd_px: float
     tolerance_px: float
+    saturated_part: float
+    """Of the skirt's saturation: with less, pixels of the wall beside it count, unevenly, as skirt; with more,
+    noise takes pixels from it, which matters less where they are only counted."""
 
 
 MEASUREMENTS = {
-    CopyProfile.BEST: PatchMeasurement(320, 240, sub_pixel=True, edge_sd_px=0.1, tolerance_px=1.7),
-    CopyProfile.PAPER: PatchMeasurement(160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6),
+    CopyProfile.BEST: PatchMeasurement(
+        320, 240, sub_pixel=True, edge_sd_px=0.1, tolerance_px=1.7, saturated_part=0.38
+    ),
+    CopyProfile.PAPER: PatchMeasurement(
+        160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6, saturated_part=0.45
+    ),
 }
 
 
@@ -146,7 +156,7 @@ class Detector:
         self._demonstrator = demonstrator
         light = (word_colours() ** self.model.gamma).astype(np.float32)
         self._white = WhiteBalance(self.model, light, demonstrator.white)
-        self._colour = SkirtColour(demonstrator.skirt, light)
+        self._colour = SkirtColour(demonstrator.skirt, light, self.profile.saturated_part)
         self._finder = EdgeFinder(self.model, demonstrator.skirt, light)
         self._larger = max(1.0, self.model.width / 320)
         self._shape = SkirtShape(demonstrator.skirt, self.model, self.profile.tolerance_px * self._larger)
@@ -202,7 +212,7 @@ class Detector:
         left_cut, right_cut = blob.left < BORDER_PX, blob.right > self.model.width - BORDER_PX
         if left_cut and right_cut:
             return Reason.CUT_OFF
-        seen = outline(blob, view.mask)
+        seen = self._outline(view, blob)
         left, right = self._edges(view, blob, seen, whole=not (left_cut or right_cut))
         left, right = None if left_cut else left, None if right_cut else right
         if left is not None and right is not None:
@@ -212,6 +222,12 @@ class Detector:
         if (left is None and right is None) or not self._fits_part(blob, seen):
             return Reason.CUT_OFF if left_cut or right_cut else Reason.HIDDEN
         return self._from_one_edge(view, blob, seen, (left, right), covered)
+
+    def _outline(self, view: View, blob: Blob) -> Outline:
+        if self.profile.sub_pixel:
+            return lit_outline(blob, view.mask, view.words, view.white, self._colour)
+        seen = outline(blob, view.mask)
+        return replace(seen, height_px=max(seen.height_px - GROWN_PX, 1.0))
 
     @property
     def _must_be_covered(self) -> bool:
@@ -226,8 +242,9 @@ class Detector:
         left, right = self._shape.sides_by_size(blob) if whole else sides_of_box(blob)
         return Edge(left, seen.middle_row, 0.0), Edge(right, seen.middle_row, 0.0)
 
-    def _bearing_rad(self, edge: Edge) -> float:
-        return self.model.level_bearing_rad(edge.column, edge.row, self.tilt.pitch_rad, self.tilt.roll_rad)
+    def _bearings_rad(self, *edges: Edge) -> list[float]:
+        columns, rows = [edge.column for edge in edges], [edge.row for edge in edges]
+        return self.model.level_bearings_rad(columns, rows, self.tilt.pitch_rad, self.tilt.roll_rad)
 
     def _edge_sd_rad(self, *edges: Edge) -> float:
         variances = [edge.noise_sd_px**2 + (self.profile.edge_sd_px * self._larger) ** 2 for edge in edges]
@@ -239,7 +256,8 @@ class Detector:
         if right.column - left.column < MIN_WIDTH_PX:
             return Reason.UNLIKE
         radius_m = self._demonstrator.skirt.radius_m
-        range_m, bearing_rad = range_and_bearing(self._bearing_rad(left), self._bearing_rad(right), radius_m)
+        left_rad, right_rad = self._bearings_rad(left, right)
+        range_m, bearing_rad = range_and_bearing(left_rad, right_rad, radius_m)
         depth_m = self._shape.depth_m(range_m, bearing_rad)
         column = (left.column + right.column) / 2
         if not self._fits(seen, depth_m, column):
@@ -273,7 +291,7 @@ class Detector:
         left, right = edges
         side, edge = (1, left) if left is not None else (-1, right)
         assert edge is not None
-        bearing_rad = self._bearing_rad(edge) - side * half_angle_rad(range_m, radius_m)
+        bearing_rad = self._bearings_rad(edge)[0] - side * half_angle_rad(range_m, radius_m)
         edge_sd_rad = self._edge_sd_rad(edge)
         spread = covariance_of_one_edge(range_m, range_sd_m, edge_sd_rad, MOUNTING_SD_RAD, side, radius_m)
         columns = (left.column if left else None, right.column if right else None)

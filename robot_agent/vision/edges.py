@@ -13,9 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_agent.vision.blobs import Blob, Outline
+from robot_agent.vision.blobs import Blob, median
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.demonstrator import Skirt
+from robot_agent.vision.outline import Outline
 from robot_agent.vision.pixels import Words
 from robot_agent.vision.skirt_colour import opponent
 
@@ -25,8 +26,14 @@ PLATEAU_PX = 4
 """Chosen: enough pixels on either side of the step for their noise to average out."""
 LARGE_WIDTH = 480
 """From this image width on, windows are twice as wide: a lens's blur is larger in pixels."""
-MAX_SHIFT_PX = 3.0
-"""Farther from the patch's border than the blur explains is the edge of another thing."""
+WIDER_PX = 2
+"""Chosen: of the window at either side of a blurred edge."""
+BLURRED_PX = 1.3
+"""Of the edge from the patch's border: a sharp image's patch is hardly smaller than the skirt."""
+MAX_SHIFT_PX = 6.0
+"""Farther from the patch's border than blur and noise explain is the edge of another thing."""
+LOOKS = 3
+"""At an edge: the patch's border is inside a blurred edge, and the first look may hold but a part of it."""
 PALE_SATURATION = 0.16
 """Chosen: of the wall and floor beside an edge, which the light's estimate makes white or grey."""
 PALE_LIGHT = 0.25
@@ -40,7 +47,7 @@ BAND_HALF = 0.18
 MOST_HALF_ROWS = 10
 """Chosen: more rows of a near skirt cost time and add no precision that the bearing could use."""
 LIKE_NEIGHBOURS = 3.0
-"""A Bayer mosaic's interpolation makes neighbouring pixels' noise alike: the variance of their mean grows by this."""
+"""A Bayer mosaic's interpolation makes neighbouring pixels' noise alike: so much more varies their mean."""
 COVER_ROWS = 3
 """How far up to look for the boards or a hat: farther up, it may be what is above the wall."""
 COVERED = 0.7
@@ -108,38 +115,72 @@ class EdgeFinder:
 
     def _edge(self, words: Words, start: int, rows: slice, white: NDArray[np.float64]) -> Edge | None:
         """The left edge near column `start` of an image that ends within the skirt."""
-        edge = self._edge_at(words, start, rows, white)
-        if edge is not None and abs(edge.column + 0.5 - start) > 1:
-            edge = self._edge_at(words, round(edge.column + 0.5), rows, white)
-        return edge if edge is not None and abs(edge.column + 0.5 - start) < MAX_SHIFT_PX else None
+        profile = self._profile(words, start, rows, self._reach)
+        for _ in range(LOOKS):
+            if profile is None:
+                return None
+            column = profile.column(self._channel)
+            if abs(column + 0.5 - profile.looked_at) <= 1:
+                break
+            blurred = abs(column + 0.5 - start) > BLURRED_PX
+            reach = self._reach + (WIDER_PX if blurred else 0)
+            profile = self._profile(words, round(column + 0.5), rows, reach)
+        if profile is None:
+            return None
+        column = profile.column(self._channel)
+        if not profile.is_of_skirt(self._channel, white):
+            return None
+        if abs(column + 0.5 - start) > MAX_SHIFT_PX * self._reach / REACH_PX:
+            return None
+        return Edge(column, (rows.start + rows.stop - 1) / 2, profile.noise_sd_px(self._channel))
 
-    def _edge_at(self, words: Words, start: int, rows: slice, white: NDArray[np.float64]) -> Edge | None:
-        """The edge within the window around `start`."""
-        first = max(0, start - self._reach - self._plateau)
-        outer = start - self._reach - first
+    def _profile(self, words: Words, start: int, rows: slice, reach: int) -> Profile | None:
+        """The light around `start`; None too close to the border."""
+        first = max(0, start - reach - self._plateau)
+        outer = start - reach - first
         if outer < 2:
             return None
-        light = self._light[words[rows, first : start + self._reach + self._plateau]]
-        if not _is_pale(light[:, max(0, outer - self._plateau) : outer].mean(axis=(0, 1)), white):
-            return None
-        lit = light[:, :, self._channel]
-        step = _step(lit.mean(axis=0), outer, 2 * self._reach)
-        if step[1] < MIN_STEP * white[self._channel]:
-            return None
-        rows_seen, pixels = lit.shape[0], lit[:, :outer]
-        noise = float(((pixels - pixels.mean(axis=0)) ** 2).sum()) / max((rows_seen - 1) * outer, 1)
-        noise_sd_px = math.sqrt(LIKE_NEIGHBOURS * noise / rows_seen * 2 * self._reach) / step[1]
-        return Edge(first - 0.5 + step[0], (rows.start + rows.stop - 1) / 2, noise_sd_px)
+        light = self._light[words[rows, first : start + reach + self._plateau]]
+        return Profile(light, first, outer, 2 * reach)
+
+
+class Profile:
+    """Light (rows, columns, 3) across a left edge: `outer` columns beside it, then `window` around it."""
+
+    def __init__(self, light: NDArray[np.float32], first: int, outer: int, window: int) -> None:
+        self._light, self._first, self._outer, self._window = light, first, outer, window
+        self._mean = light.mean(axis=0)
+        self.looked_at = first + outer + window // 2
+
+    def _plateaus(self, channel: int) -> tuple[float, float, int]:
+        """(light outside, light inside, the window's last column)."""
+        profile = self._mean[:, channel]
+        last = min(self._outer + self._window, profile.size - 1)
+        return float(profile[: self._outer].mean()), median(profile[last:]), last
+
+    def column(self, channel: int) -> float:
+        """Where the profile steps down."""
+        high, low, last = self._plateaus(channel)
+        lit = float(self._mean[self._outer : last, channel].sum()) - low * (last - self._outer)
+        part = min(max(lit / max(high - low, 1e-6), 0.0), float(last - self._outer))
+        return self._first - 0.5 + self._outer + part
+
+    def is_of_skirt(self, channel: int, white: NDArray[np.float64]) -> bool:
+        """Whether it steps down from wall or floor, as at a skirt's side."""
+        high, low, _ = self._plateaus(channel)
+        return high - low > MIN_STEP * white[channel] and _is_pale(
+            self._mean[: self._outer].mean(axis=0), white
+        )
+
+    def noise_sd_px(self, channel: int) -> float:
+        """Of the column."""
+        high, low, _ = self._plateaus(channel)
+        pixels, mean = self._light[:, : self._outer, channel], self._mean[: self._outer, channel]
+        rows = pixels.shape[0]
+        noise = float(((pixels - mean) ** 2).sum()) / max((rows - 1) * self._outer, 1)
+        return math.sqrt(LIKE_NEIGHBOURS * noise / rows * self._window) / max(high - low, 1e-6)
 
 
 def _is_pale(colour: NDArray[np.float32], white: NDArray[np.float64]) -> bool:
     saturation = abs(complex(opponent(colour[np.newaxis], white)[0]))
     return saturation < PALE_SATURATION and float((colour / white).max()) > PALE_LIGHT
-
-
-def _step(profile: NDArray[np.float32], outer: int, window: int) -> tuple[float, float]:
-    """(where the profile steps down after its `outer` samples, in samples; by how much)."""
-    last = min(outer + window, profile.size - 1)
-    high, low = float(profile[:outer].mean()), float(np.median(profile[last:]))
-    height = max(high - low, 1e-9)
-    return outer + (float(profile[outer:last].sum()) - low * (last - outer)) / height, high - low

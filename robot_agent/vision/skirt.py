@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from typing import TypeAlias
 
-from robot_agent.vision.blobs import Blob, Outline
+from robot_agent.vision.blobs import Blob
 from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.demonstrator import SKIRT_RADIUS_M, Skirt
+from robot_agent.vision.outline import Outline
 
 TOLERANCE = 0.05
 """Of a length in the image; chosen: a skirt is cut and fastened by hand."""
-GROWN_PX = 0.7
-"""How much higher than the skirt its patch is: the body and the shadow do not bound it as white wall does."""
 SHRUNK_PX = 1.1
 """How much narrower than the skirt its patch is: blur takes about half a pixel from each side."""
 SMALLEST_PART = 1 / 3
@@ -36,7 +35,7 @@ class SkirtShape:
         The image is `tilted_px` lower there than a level camera's, give or take `slack_px`.
         """
         off_px = self.row_offset_px(seen, depth_m) - tilted_px
-        high = _close(seen.height_px - GROWN_PX, self.height_px(depth_m), self._tolerance_px)
+        high = _close(seen.height_px, self.height_px(depth_m), self._tolerance_px)
         return high and _close(off_px, 0.0, self._tolerance_px + slack_px)
 
     def fits_part(self, blob: Blob, depth_m: float) -> bool:
@@ -56,7 +55,7 @@ class SkirtShape:
 
     def depth_from_height_m(self, seen: Outline) -> float:
         """How far away, along the camera's axis, the nearest point of a skirt of the patch's height is."""
-        return self._model.focal_px * self._skirt.height_m / max(seen.height_px - GROWN_PX, 1.0)
+        return self._model.focal_px * self._skirt.height_m / max(seen.height_px, 1.0)
 
     def depth_m(self, range_m: float, bearing_rad: float) -> float:
         """How far away, along the camera's axis, the nearest point of a skirt at a range and bearing is."""

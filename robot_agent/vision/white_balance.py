@@ -36,8 +36,10 @@ class WhiteBalance:
 
     def __init__(self, model: CameraModel, light: NDArray[np.float32], white: Colour) -> None:
         """`light`: linear red, green and blue of each word, shape (65536, 3)."""
-        self._light = light
         self._calibrated = _hue(np.array([white]))[0]
+        self._cells = _cells(_hue(light) - self._calibrated)
+        self._cells[(light.max(axis=1) > CLIPPED) | (light.min(axis=1) < UNLIT)] = OUTSIDE
+        self._brightness = np.ascontiguousarray(light[:, 1])
         self._hue: NDArray[np.float64] | None = None
         above, below = model.height // 9, model.height // 7
         row = round(model.horizon_row)
@@ -47,17 +49,15 @@ class WhiteBalance:
 
     def follow(self, words: Words) -> NDArray[np.float64]:
         """Linear red, green and blue of a white wall in this frame, in parts of full scale."""
-        colours = self._light[words[self._rows, self._columns].ravel()]
-        brightness = colours[:, 1]
-        usable = colours[(colours.max(axis=1) < CLIPPED) & (colours.min(axis=1) > UNLIT)]
-        if len(usable) > ENOUGH_PART * len(colours):
-            found = _commonest(_hue(usable) - self._calibrated, usable[:, 1]) + self._calibrated
+        sample = words[self._rows, self._columns].ravel()
+        brightness, cells = self._brightness.take(sample), self._cells.take(sample)
+        if np.count_nonzero(cells != OUTSIDE) > ENOUGH_PART * sample.size:
+            found = _commonest(cells, brightness) + self._calibrated
             self._hue = found if self._hue is None else self._hue + NEWEST_PART * (found - self._hue)
-        hue = self._calibrated if self._hue is None else self._hue
-        level = float(
-            np.partition(brightness, int(WALL_PART * brightness.size))[int(WALL_PART * brightness.size)]
-        )
-        return max(level, 1e-3) * np.array([math.exp(hue[0]), 1.0, math.exp(hue[1])])
+        red, blue = self._calibrated if self._hue is None else self._hue
+        brightness.sort()
+        level = max(float(brightness[int(WALL_PART * brightness.size)]), 1e-3)
+        return level * np.array([math.exp(red), 1.0, math.exp(blue)])
 
 
 def _hue(colours: NDArray[np.floating]) -> NDArray[np.float64]:
@@ -66,17 +66,23 @@ def _hue(colours: NDArray[np.floating]) -> NDArray[np.float64]:
     return np.asarray(logs[:, ::2] - logs[:, 1:2], dtype=np.float64)
 
 
-def _commonest(hues: NDArray[np.float64], weights: NDArray[np.float32]) -> NDArray[np.float64]:
-    """The middle of the fullest place of a histogram; bright things, as walls are, weigh more."""
-    cells = np.floor((hues + MOST_OFF) / BIN).astype(np.intp)
-    inside = ((cells >= 0) & (cells < BINS)).all(axis=1)
-    if not inside.any():
-        return np.zeros(2)
-    counts = np.bincount(cells[inside, 0] * BINS + cells[inside, 1], weights[inside], BINS * BINS)
-    full = counts.reshape(BINS, BINS)
-    wide = np.pad(full, 1)
-    smooth = full + wide[:-2, 1:-1] + wide[2:, 1:-1] + wide[1:-1, :-2] + wide[1:-1, 2:]
-    peak = np.array(np.unravel_index(int(smooth.argmax()), full.shape))
-    middle = (peak + 0.5) * BIN - MOST_OFF
-    near = np.abs(hues - middle).max(axis=1) < 2 * BIN
-    return np.asarray(np.average(hues[near], axis=0, weights=weights[near]))
+OUTSIDE = BINS * BINS
+"""The cell of all colours that are too far from white, too dark or clipped."""
+
+
+def _cells(hues: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The cell of the histogram of each hue."""
+    places = np.floor((hues + MOST_OFF) / BIN).astype(np.int64)
+    inside = ((places >= 1) & (places < BINS - 1)).all(axis=1)
+    return np.where(inside, places[:, 0] * BINS + places[:, 1], OUTSIDE)
+
+
+def _commonest(cells: NDArray[np.int64], weights: NDArray[np.float32]) -> NDArray[np.float64]:
+    """The middle of the fullest place of the histogram; bright things, as walls are, weigh more."""
+    full = np.bincount(cells, weights, OUTSIDE + 1)[:OUTSIDE].reshape(BINS, BINS)
+    wide = full[1:-1, 1:-1] + full[:-2, 1:-1] + full[2:, 1:-1] + full[1:-1, :-2] + full[1:-1, 2:]
+    row, column = divmod(int(wide.argmax()), BINS - 2)
+    near = full[row : row + 3, column : column + 3]
+    steps = np.arange(3)
+    offset = np.array([steps @ near.sum(axis=1), steps @ near.sum(axis=0)]) / near.sum()
+    return np.asarray((np.array([row, column]) + offset + 0.5) * BIN - MOST_OFF)
