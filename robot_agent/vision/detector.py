@@ -121,8 +121,8 @@ class PatchMeasurement:
     edge_sd_px: float
     tolerance_px: float
     saturated_part: float
-    """Of the skirt's saturation: with less, pixels of the wall beside it count, unevenly, as skirt; with more,
-    noise takes pixels from it, which matters less where they are only counted."""
+    """Of the skirt's saturation: with less, pixels of the wall beside it count, unevenly, as skirt; with
+    more, noise takes pixels from it, which matters less where they are only counted."""
 
 
 MEASUREMENTS = {
