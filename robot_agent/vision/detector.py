@@ -127,7 +127,7 @@ class PatchMeasurement:
 
 MEASUREMENTS = {
     CopyProfile.BEST: PatchMeasurement(
-        320, 240, sub_pixel=True, edge_sd_px=0.1, tolerance_px=1.7, saturated_part=0.38
+        320, 240, sub_pixel=True, edge_sd_px=0.12, tolerance_px=1.7, saturated_part=0.38
     ),
     CopyProfile.PAPER: PatchMeasurement(
         160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6, saturated_part=0.45
