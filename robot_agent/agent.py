@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from robot_agent.activities import Activity, Finished, Seen, Task, Visiting, Waiting
 from robot_agent.checkpoint import Checkpoint
+from robot_agent.drivers.health import TellsHealth
 from robot_agent.drivers.interfaces import Body
 from robot_agent.drivers.kinematics import WheelSpeeds
 from robot_agent.navigation.pose_estimator import PoseEstimator
@@ -19,6 +20,7 @@ class Agent:
         self.activity: Activity = Waiting(task, task.compartment.grid.start)
         self._task = task
         self._body = body
+        self._tells_health = body if isinstance(body, TellsHealth) else None
         self._estimator = estimator
         self._reporter = reporter
         self._checkpoint: Checkpoint | None = None
@@ -74,6 +76,7 @@ class Agent:
             policy.tracks,
             seen.pose_age_s,
             self._task.inbox.bad,
+            self._tells_health.health if self._tells_health else None,
         )
 
     def resume_from(self, checkpoint: Checkpoint) -> None:

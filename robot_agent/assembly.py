@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -24,20 +26,30 @@ if TYPE_CHECKING:
     from robot_agent.imitation.visit import BeginVisit
 
 
+@dataclass(frozen=True)
+class Place:
+    """Where and in what time the robots are: what a command line says beside the experiment."""
+
+    addresses: Mapping[str, str] = field(default_factory=dict)
+    """Of robots that are somewhere else than the experiment says: emulated ones."""
+    speed: float = 1.0
+    lockstep: bool = False
+
+
 class Assembly:
     """Makes the agents of one process for one trial."""
 
-    def __init__(self, experiment: Experiment, node: Node, trial: int) -> None:
+    def __init__(self, experiment: Experiment, node: Node, trial: int, place: Place | None = None) -> None:
         self._experiment = experiment
         self._node = node
         self._trial = trial
+        self._place = place or Place()
 
     def agent(self, name: str) -> Agent:
         """The agent of the robot with this id."""
         settings, robot = self._experiment, self._experiment.robot_named(name)
         reporter = Reporter(self._node, name)
-        generator = partial(settings.generator, robot, self._trial)
-        parts = DriverParts(settings, robot, EpuckGeometry(), self._node, generator)
+        parts = self.driver_parts(name)
         driver, estimator = make_driver(parts), PoseEstimator(parts.geometry)
         policy = self._policy(robot, reporter)
         task = Task(
@@ -50,6 +62,20 @@ class Assembly:
             _visits(parts, driver, policy, estimator.pose, reporter),
         )
         return Agent(task, driver.body, estimator, reporter)
+
+    def driver_parts(self, name: str) -> DriverParts:
+        """What the driver of the robot with this id is made from."""
+        robot, place = self._experiment.robot_named(name), self._place
+        return DriverParts(
+            self._experiment,
+            robot,
+            EpuckGeometry.calibrated(robot.wheel_diameter_m, robot.wheel_base_m),
+            self._node,
+            partial(self._experiment.generator, robot, self._trial),
+            place.addresses.get(name, robot.address),
+            place.speed,
+            place.lockstep,
+        )
 
     def _policy(self, robot: RobotSettings, reporter: Reporter) -> Policy:
         experiment = self._experiment

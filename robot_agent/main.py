@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import sys
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 
+from robot_agent.addresses import add_address_argument, addresses
 from robot_agent.agent import Agent
-from robot_agent.assembly import Assembly
+from robot_agent.assembly import Assembly, Place
 from robot_agent.checkpoint import Checkpoint
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, guarded, nearest
@@ -26,18 +28,27 @@ def main() -> None:
     sys.exit(guarded(lambda: _called(sys.argv[1:])))
 
 
+TOOLS = {
+    ("calibrate", "wheels"): "robot_agent.commands.calibrate_wheels:calibrate_wheels",
+    ("calibrate",): "robot_agent.commands.calibrate:calibrate",
+    ("check",): "robot_agent.commands.check:check",
+    ("collect-copies",): "robot_agent.commands.collect_copies:collect",
+    ("emulate",): "robot_agent.emulator.command:emulate",
+    ("emulate-robots",): "robot_agent.emulator.in_run:emulate_robots",
+}
+"""The first words of the command line, and MODULE:FUNCTION of the tool, whose parser is FUNCTION_parser."""
+
+
 def _called(words: list[str]) -> None:
-    """A tool if the first word names one, and else a robot."""
-    if words[:1] == ["calibrate"]:
-        from robot_agent.commands.calibrate import calibrate, calibrate_parser
-
-        calibrate(calibrate_parser().parse_args(words[1:]))
-    elif words[:1] == ["collect-copies"]:
-        from robot_agent.commands.collect_copies import collect, collect_parser
-
-        collect(collect_parser().parse_args(words[1:]))
-    else:
-        run(_parser().parse_args(words))
+    """A tool if the first words name one, and else a robot; only what is called is loaded."""
+    for name, place in TOOLS.items():
+        if tuple(words[: len(name)]) == name:
+            module, _, function = place.partition(":")
+            tool = import_module(module)
+            arguments = getattr(tool, f"{function}_parser")().parse_args(words[len(name) :])
+            getattr(tool, function)(arguments)
+            return
+    run(_parser().parse_args(words))
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -46,7 +57,8 @@ def run(arguments: argparse.Namespace) -> None:
     names = _names(arguments.robot, experiment)
     leave_on_signals()
     with joined(arguments, "robot", names, experiment.simulation.tick_s) as node:
-        assembly = Assembly(experiment, node, arguments.trial)
+        place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
+        assembly = Assembly(experiment, node, arguments.trial, place)
         agents = [assembly.agent(name) for name in names]
         if arguments.state:
             run = f"{experiment.run.name}, seed {experiment.run.seed}, trial {arguments.trial}"
@@ -91,11 +103,13 @@ def _parser() -> OneLineParser:
         prog="robot-agent",
         description="The process on a robot's board: it finds out where the robot is, decides, drives and "
         "learns. Start the swarm server and the tracker bridge first or later: the agent waits for them.",
-        epilog="tools: `robot-agent calibrate --help` learns the colour of a skirt; "
-        "`robot-agent collect-copies --help` stores how well simulated robots copy.",
+        epilog="tools, each with --help: `robot-agent check` tries a real robot; `calibrate` learns the "
+        "colour of a skirt and `calibrate wheels` a robot's dimensions; `emulate` stands in for a robot; "
+        "`collect-copies` stores how well simulated robots copy.",
     )
     add_common_arguments(parser)
     parser.add_argument("--robot", default="", metavar="ID[,ID...]", help="which robot this is")
+    add_address_argument(parser)
     parser.add_argument(
         "--state",
         type=Path,

@@ -6,6 +6,7 @@ from typing import TypeVar
 
 from google.protobuf.message import Message
 
+from robot_agent.drivers.health import BodyHealth
 from robot_agent.drivers.kinematics import WheelSpeeds
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
@@ -45,9 +46,16 @@ class Reporter:
         self._publish(topics.COMMAND, message)
 
     def status(
-        self, t_ns: int, activity: str, moves: int, tracks: int, pose_age_s: float, bad_messages: int
+        self,
+        t_ns: int,
+        activity: str,
+        moves: int,
+        tracks: int,
+        pose_age_s: float,
+        bad_messages: int,
+        health: BodyHealth | None = None,
     ) -> None:
-        """Once a second; a pose that never came counts as 100,000 s old."""
+        """Once a second; a pose that never came counts as 100,000 s old. Real robots tell how they do."""
         if t_ns < self._status_due_ns:
             return
         self._status_due_ns = t_ns + STATUS_PERIOD_NS
@@ -58,6 +66,8 @@ class Reporter:
             pose_age_s=min(pose_age_s, LONGEST_AGE_S),
             bad_messages=bad_messages,
         )
+        if health:
+            _tell_health(message, health)
         self._publish(topics.STATUS, message)
 
     def warning(self, name: str, text: str) -> None:
@@ -115,3 +125,13 @@ class Reporter:
 
     def _publish(self, topic: Topic[M], message: M) -> None:
         self._node.publish(topic, message, self._robot)
+
+
+def _tell_health(message: pb.Status, health: BodyHealth) -> None:
+    """The fields that only real robots have."""
+    message.battery_v = health.battery_v
+    message.proximity.extend(health.proximity)
+    message.reading_age_s = min(health.reading_age_s, LONGEST_AGE_S)
+    message.failed_exchanges = health.failed_exchanges
+    message.refused_readings = health.refused_readings
+    message.refused_commands = health.refused_commands

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from server.processes.environment import Environment, laboratory, simulated
+from server.processes.environment import Environment, laboratory, require_emulation, simulated
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
@@ -33,8 +33,12 @@ def conduct(arguments: argparse.Namespace) -> None:
     experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
     with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
         trials: Sequence[int] = range(experiment.run.trials)
-        environment: Environment = partial(simulated, experiment, arguments.speed, progress.warn)
-        if arguments.listen:
+        environment: Environment = partial(
+            simulated, experiment, arguments.speed, progress.warn, emulate=arguments.emulate
+        )
+        if not arguments.listen:
+            require_emulation(experiment, arguments.speed, emulate=arguments.emulate)
+        else:
             settings = SessionSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
             session = open_session.enter_context(Session(settings))
             trials = [arguments.trial]
@@ -67,6 +71,11 @@ def _parser() -> OneLineParser:
         type=_speed,
         metavar="max|X",
         help="max: lockstep, as fast as possible, repeatable (the default); X: so many times as fast as life",
+    )
+    simulation.add_argument(
+        "--emulate",
+        action="store_true",
+        help="emulate the robots whose driver is serial, wifi, i2c or spi; needs --speed X",
     )
     real = parser.add_argument_group("laboratory")
     real.add_argument(

@@ -46,7 +46,7 @@ class Run:
         try:
             for trial in self.trials:
                 self.progress.begin(trial)
-                self.results.append(self._trial(trial, copy))
+                self._trial(trial, copy)
             state = "complete"
         finally:
             self._write_manifest(state)
@@ -54,7 +54,8 @@ class Run:
             self.directory.write_json("run.json", {**summary, **self._circumstances()})
         return summary
 
-    def _trial(self, trial: int, file: Path) -> TrialResult:
+    def _trial(self, trial: int, file: Path) -> None:
+        """Also of a trial that is interrupted it is known how far it came."""
         plan = TrialPlan(trial, file, self.directory.output(trial))
         with self.environment(plan) as environment:
             reporter = environment.reporter
@@ -63,7 +64,11 @@ class Run:
                 self.directory.log(trial), metadata(self.experiment, file, trial, self.versions)
             )
             health, views = Health(reporter), Views(self.experiment)
-            return Trial(environment, conductor, recorder, health, views, self.progress.show).run()
+            played = Trial(environment, conductor, recorder, health, views, self.progress.show)
+            try:
+                played.run()
+            finally:
+                self.results.append(played.result())
 
     def _summary(self, wall_s: float) -> dict[str, Any]:
         logs = [self.directory.log(trial) for trial in self.trials]
@@ -91,6 +96,7 @@ class Run:
     def _write_manifest(self, state: str) -> None:
         """Conditions x trials x seeds, one record each."""
         run = self.experiment.run
+        complete = {number for number, result in enumerate(self.results) if result.complete}
         records = [
             {
                 "condition": robot.group,
@@ -99,7 +105,7 @@ class Run:
                 "trial": trial,
                 "seed": run.seed,
                 "log": self.directory.log(trial).name,
-                "state": "complete" if number < len(self.results) else state,
+                "state": "complete" if number in complete else state,
             }
             for number, trial in enumerate(self.trials)
             for robot in self.experiment.robot

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -10,8 +11,11 @@ from server.processes.environment import TrialEnvironment
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
 from server.recording.recorder import Recorder
+from swarm.logs.ending import COMPLETE
 from swarm.messages import swarm_pb2 as pb
 
+SIGNALLED = 128
+"""A process that leaves on a signal has this code and the signal's number."""
 BATCHES_AFTER_THE_END = 3
 """The end reaches the robots two exchanges later; one more brings their last words."""
 
@@ -20,11 +24,15 @@ BATCHES_AFTER_THE_END = 3
 class TrialResult:
     """What a trial came to."""
 
+    complete: bool
     moves: int
     sim_s: float
     messages: int
     bad_messages: int
     unknown_keys: dict[str, int]
+    oversized: dict[str, int]
+    """Keys with messages that were too large to be logged; `swarm check` counts them as missing."""
+    disk_error: str
     slowest_keys: dict[str, float]
 
 
@@ -47,11 +55,12 @@ class Trial:
         self._health = health
         self._views = views
         self._show = show
+        self._complete = False
         self._batches = 0
         self._began_ns: int | None = None
         self._t_ns = 0
 
-    def run(self) -> TrialResult:
+    def run(self) -> None:
         """Until every learner has made its moves. The log is closed whatever happens."""
         try:
             self._hub.start()
@@ -60,22 +69,26 @@ class Trial:
                 self._step()
             for _ in range(BATCHES_AFTER_THE_END):
                 self._step()
-            self._hub.finish()
+            self._recorder.write(self._hub.finish())
+            self._recorder.end(COMPLETE, "", self._hub.accounts())
+            self._complete = True
         except BaseException as error:
             self._note_end(error)
             raise
         finally:
             self._recorder.close()
-        return self.result()
 
     def result(self) -> TrialResult:
         """What the trial has come to so far."""
         return TrialResult(
+            complete=self._complete,
             moves=sum(self._conductor.moves.values()),
             sim_s=(self._t_ns - (self._began_ns or 0)) / 1e9,
             messages=self._recorder.messages,
             bad_messages=self._conductor.bad_messages,
             unknown_keys=self._recorder.unknown_keys,
+            oversized=self._recorder.oversized,
+            disk_error=self._recorder.disk_error,
             slowest_keys=self._health.lowest_share,
         )
 
@@ -98,7 +111,15 @@ class Trial:
             self._show(self._conductor, self._t_ns / 1e9)
 
     def _note_end(self, error: BaseException) -> None:
-        """The reason is the log's last message."""
-        text = str(error) or type(error).__name__
+        """The reason is the log's last message, and stands in its last record."""
+        text = _reason(error)
         self._environment.reporter.event("interrupted", text[:500], pb.Event.ERROR)
         self._recorder.write(self._hub.unsent())
+        self._recorder.end("interrupted", text[:500], self._hub.accounts())
+
+
+def _reason(error: BaseException) -> str:
+    """In words, also for a process that leaves by itself or on a signal."""
+    if isinstance(error, SystemExit) and isinstance(error.code, int) and error.code > SIGNALLED:
+        return f"the server was ended by {signal.Signals(error.code - SIGNALLED).name}"
+    return str(error) or type(error).__name__

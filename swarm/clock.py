@@ -42,10 +42,15 @@ class WallClock:
             wait_s = (due_ns - self.now_ns()) / NS_PER_S / self._speed
             if wait_s > 0:
                 self._sleep(wait_s)
+            due_ns += self._missed_ns(due_ns, period_ns)
             yield due_ns
-            missed = max(0, (self.now_ns() - due_ns) // period_ns)
-            self.late_ticks += missed
-            due_ns += (missed + 1) * period_ns
+            due_ns += self._missed_ns(due_ns, period_ns) + period_ns
+
+    def _missed_ns(self, due_ns: int, period_ns: int) -> int:
+        """The whole periods since a tick was due: a process that was stopped goes on from now."""
+        missed = max(0, (self.now_ns() - due_ns) // period_ns)
+        self.late_ticks += missed
+        return missed * period_ns
 
 
 def unix_clock() -> WallClock:

@@ -17,6 +17,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+def printable(path: Path) -> str:
+    """A path as text that can be printed and stored: bytes that are no UTF-8 as escapes."""
+    return os.fsencode(path).decode("utf-8", "backslashreplace")
+
+
 def new_file(path: Path) -> BufferedWriter:
     """Open a file for writing; UserError if it is there already or cannot be made."""
     try:
@@ -52,8 +57,9 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
 
 
 def write_text(text: str, path: Path) -> Path:
-    """A text, whole."""
-    return write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+    """A text, whole; in it names of files that are not UTF-8 are written with escapes."""
+    data = text.encode("utf-8", "backslashreplace")
+    return write_whole(path, lambda temporary: temporary.write_bytes(data))
 
 
 def write_json(content: Any, path: Path) -> Path:

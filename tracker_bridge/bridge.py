@@ -6,7 +6,8 @@ from swarm.clock import NS_PER_S
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.runtime.node import Node
-from tracker_bridge.backends.interface import Backend, TrackedPose
+from tracker_bridge.backends.datagrams import Receiving
+from tracker_bridge.backends.interface import Backend, Telling, TrackedPose
 from tracker_bridge.plausibility import Plausibility
 
 LOST_AFTER_NS = 2 * NS_PER_S
@@ -21,6 +22,7 @@ class Bridge:
         self._node = node
         self._seen_ns: dict[str, int | None] = dict.fromkeys(robots)
         self._refused: dict[str, str] = {}
+        self._told_of: set[str] = set()
 
     def step(self, t_ns: int) -> None:
         """One tick: pass on what the tracking system measured since the last."""
@@ -31,6 +33,11 @@ class Bridge:
             if seen_ns is not None and t_ns - seen_ns > LOST_AFTER_NS:
                 self._seen_ns[robot] = None
                 self._report("lost", f"{robot}: no believable pose for {LOST_AFTER_NS // NS_PER_S} s")
+        if isinstance(self._backend, Telling):
+            for name, text in self._backend.told():
+                self._report(name, text)
+        if isinstance(self._backend, Receiving):
+            self._tell_of_datagrams(self._backend)
 
     def _pass_on(self, tracked: TrackedPose) -> None:
         reason = self._plausibility.reason_against(tracked)
@@ -41,11 +48,26 @@ class Bridge:
         if reason:
             return
         self._seen_ns[tracked.robot] = tracked.captured_t_ns
-        pose = tracked.pose
-        message = pb.Pose(
-            x_m=pose.x_m, y_m=pose.y_m, theta_rad=pose.theta_rad, captured_t_ns=tracked.captured_t_ns
-        )
-        self._node.publish(topics.POSE, message, tracked.robot)
+        self._node.publish(topics.POSE, _message(tracked), tracked.robot)
+
+    def _tell_of_datagrams(self, backend: Receiving) -> None:
+        """Each reason for which datagrams are refused, once."""
+        for reason in [reason for reason in backend.arrivals.refused if reason not in self._told_of]:
+            self._told_of.add(reason)
+            self._report("datagram", f"refused: {reason}")
 
     def _report(self, name: str, text: str) -> None:
         self._node.publish(topics.TRACKER_EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))
+
+
+def _message(tracked: TrackedPose) -> pb.Pose:
+    return pb.Pose(
+        x_m=tracked.pose.x_m,
+        y_m=tracked.pose.y_m,
+        theta_rad=tracked.pose.theta_rad,
+        captured_t_ns=tracked.captured_t_ns,
+        received_t_ns=tracked.received_t_ns,
+        source_t_ns=tracked.source_t_ns,
+        residual_m=tracked.residual_m,
+        quality=tracked.quality,
+    )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from robot_agent.drivers.deadline import STOP_WITHIN_S
 from robot_agent.drivers.interfaces import Camera, DriverParts
 from robot_agent.drivers.kinematics import STOPPED, EpuckGeometry, WheelSpeeds, WheelSteps
 from robot_agent.vision.camera_model import CameraModel
@@ -18,19 +19,23 @@ from swarm.messages import topics
 
 
 class PerfectWheels:
-    """Two wheels at constant speeds between commands, and where they have brought the robot."""
+    """Two wheels at constant speeds between commands, and where they have brought the robot.
+
+    Without a fresh command for 0.3 s they stand: every driver's do, whatever became of its agent.
+    """
 
     def __init__(self, geometry: EpuckGeometry, start: Pose) -> None:
         self._geometry = geometry
         self._pose = start
         self._speeds = STOPPED
-        self._t_ns = 0
+        self._t_ns = self._stand_ns = 0
         self._left_steps = 0.0
         self._right_steps = 0.0
 
     def drive(self, speeds: WheelSpeeds, t_ns: int) -> WheelSpeeds:
         self._roll(t_ns)
         self._speeds = self._geometry.sendable(speeds)
+        self._stand_ns = t_ns + round(STOP_WITHIN_S * 1e9)
         return self._speeds
 
     def wheel_steps(self, t_ns: int) -> WheelSteps:
@@ -46,7 +51,8 @@ class PerfectWheels:
         self._speeds = STOPPED
 
     def _roll(self, t_ns: int) -> None:
-        elapsed_s, self._t_ns = (t_ns - self._t_ns) * 1e-9, t_ns
+        rolling_ns = max(0, min(t_ns, self._stand_ns) - self._t_ns)
+        elapsed_s, self._t_ns = rolling_ns * 1e-9, t_ns
         left = self._speeds.left_steps_per_s * elapsed_s
         right = self._speeds.right_steps_per_s * elapsed_s
         self._left_steps += left

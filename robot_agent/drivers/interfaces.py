@@ -35,6 +35,12 @@ class DriverParts:
     geometry: EpuckGeometry
     node: Node
     generator: Callable[[str], np.random.Generator]
+    address: str = ""
+    """Where a real robot is: the settings' address, or that of its emulation."""
+    speed: float = 1.0
+    """How many times as fast as life the run's time passes."""
+    lockstep: bool = False
+    """Whether time passes in steps: nothing that is outside this program can join then."""
 
 
 @runtime_checkable

@@ -46,6 +46,11 @@ def _continued(count: int | None, reading: int) -> int:
     return count + ((reading - count + 0x8000) & 0xFFFF) - 0x8000
 
 
+STEP_M = 0.1288e-3
+"""A wheel of 41 mm turns once in 1000 steps; the simulated robots' wheels too."""
+NOMINAL_DIAMETER_M = 0.041
+
+
 @dataclass(frozen=True, slots=True)
 class EpuckGeometry:
     """Dimensions of an e-puck. Defaults are the manufacturer's; the track should be calibrated.
@@ -54,10 +59,20 @@ class EpuckGeometry:
     its own.
     """
 
-    step_m: float = 0.1288e-3
+    step_m: float = STEP_M
     wheel_base_m: float = 0.053
     max_steps_per_s: float = 1000.0
     body_radius_m: float = 0.035
+
+    @classmethod
+    def calibrated(cls, wheel_diameter_m: float, wheel_base_m: float) -> EpuckGeometry:
+        """The geometry of one real robot."""
+        return cls(step_m=STEP_M * (wheel_diameter_m / NOMINAL_DIAMETER_M), wheel_base_m=wheel_base_m)
+
+    @staticmethod
+    def diameter_m(step_m: float) -> float:
+        """The diameter of a wheel with steps of this length."""
+        return NOMINAL_DIAMETER_M * (step_m / STEP_M)
 
     def wheel_speeds(self, forward_m_per_s: float, turn_rad_per_s: float) -> WheelSpeeds:
         """The wheel speeds of a differential drive for a forward and a counter-clockwise turning speed."""

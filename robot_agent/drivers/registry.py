@@ -1,21 +1,22 @@
-"""The drivers by the name that an experiment file gives them: a new driver adds one line."""
+"""The drivers by the name that an experiment file gives them: built in, or of an installed package.
+
+A package of somebody's own joins by an entry point in the group `swarm.drivers` that names a function (or
+class) which takes `DriverParts` and returns a `Driver`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 from robot_agent.drivers.interfaces import Driver, DriverParts
-from robot_agent.drivers.sim.robot import SimulatedDriver
 from swarm.errors import UserError, nearest
-
-DRIVERS: dict[str, Callable[[DriverParts], Driver]] = {
-    "sim": SimulatedDriver,
-}
+from swarm.plugins import DRIVERS, plugins
 
 
 def make_driver(parts: DriverParts) -> Driver:
-    """The driver that the robot's settings name."""
-    name = parts.robot.driver
-    if name not in DRIVERS:
-        raise UserError(f"robot {parts.robot.id!r}: driver is {name!r}; {nearest(name, DRIVERS)}")
-    return DRIVERS[name](parts)
+    """The driver that the robot's settings name; only its module is loaded."""
+    name, known = parts.robot.driver, plugins(DRIVERS)
+    if name not in known:
+        raise UserError(f"robot {parts.robot.id!r}: driver is {name!r}; {nearest(name, known)}")
+    make: Callable[[DriverParts], Driver] = known[name].load()
+    return make(parts)

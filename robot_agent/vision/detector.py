@@ -112,7 +112,8 @@ class PatchMeasurement:
     """How a patch's sides are measured: to a fraction of a pixel, or from its size, the number of its pixels.
 
     `tolerance_px` is how far a patch's upper and lower border may be from where a skirt's would be.
-    `edge_sd_px` is the standard deviation of an edge's error, measured by tests/benchmarks/seeing.py.
+    `edge_sd_px` is the standard deviation of an edge's error at 320 pixels of width: half as much again as
+    tests/benchmarks/seeing.py finds, since real walls and lamps are less even than the simulated ones.
     """
 
     width: int

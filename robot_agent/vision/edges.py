@@ -30,6 +30,8 @@ WIDER_PX = 2
 """Chosen: of the window at either side of a blurred edge."""
 BLURRED_PX = 1.3
 """Of the edge from the patch's border: a sharp image's patch is hardly smaller than the skirt."""
+BLURRED_SD_PX = 0.15
+"""Of a blurred edge, besides noise: what is behind the skirt is less even over so many pixels."""
 MAX_SHIFT_PX = 6.0
 """Farther from the patch's border than blur and noise explain is the edge of another thing."""
 LOOKS = 3
@@ -132,7 +134,9 @@ class EdgeFinder:
             return None
         if abs(column + 0.5 - start) > MAX_SHIFT_PX * self._reach / REACH_PX:
             return None
-        return Edge(column, (rows.start + rows.stop - 1) / 2, profile.noise_sd_px(self._channel))
+        blurred_sd_px = BLURRED_SD_PX if abs(column + 0.5 - start) > BLURRED_PX else 0.0
+        noise_sd_px = math.hypot(profile.noise_sd_px(self._channel), blurred_sd_px)
+        return Edge(column, (rows.start + rows.stop - 1) / 2, noise_sd_px)
 
     def _profile(self, words: Words, start: int, rows: slice, reach: int) -> Profile | None:
         """The light around `start`; None too close to the border."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Protocol, TypeVar
 
 from google.protobuf.message import Message
 
+from swarm.logs.ending import Sender
 from swarm.messages.header import Item
 from swarm.messages.topics import Topic
 
@@ -31,8 +33,11 @@ class Hub(Protocol):
     def unsent(self) -> Batch:
         """The server's own messages that no batch has held yet."""
 
-    def finish(self) -> None:
-        """Tell the processes that the trial is over."""
+    def finish(self) -> Batch:
+        """Tell the processes that the trial is over; what they still had to say."""
+
+    def accounts(self) -> Mapping[Sender, int] | None:
+        """The last number of each key and epoch by its sender's own account; None: all of it was heard."""
 
 
 class Batch:

@@ -37,7 +37,8 @@ class LockstepHub:
 
     What is published in one exchange (`ticks_per_exchange` ticks) reaches its subscribers with the next;
     both the batch and the process put its items in order, so that neither load nor the number of processes
-    shows. `check` raises when a process has died; `warn` is told which process does not answer.
+    shows. `check` raises when a process has died; `warn` is told which process does not answer, `exchanged`
+    of every exchange that is over.
     """
 
     def __init__(
@@ -49,6 +50,7 @@ class LockstepHub:
         warn: Callable[[str], None],
         monotonic_s: Callable[[], float] = time.monotonic,
         ticks_per_exchange: int = 1,
+        exchanged: Callable[[], None] = lambda: None,
     ) -> None:
         self._arrived: SimpleQueue[bytes] = SimpleQueue()
         session.on_arrival(LOCKSTEP_DONE, self._arrived.put)
@@ -60,6 +62,7 @@ class LockstepHub:
         self._check = check
         self._warn = warn
         self._monotonic_s = monotonic_s
+        self._exchanged = exchanged
         self._subscriptions: dict[str, list[str]] = {}
         self._readers: dict[str, tuple[str, ...]] = {}
         self._sequencer = Sequencer()
@@ -121,6 +124,7 @@ class LockstepHub:
                 for item in published:
                     self._deliver(item)
         own, self._own = self._own, []
+        self._exchanged()
         return Batch(self.t_ns, items + own)
 
     def _next_answer(self) -> Answer | None:
@@ -142,11 +146,15 @@ class LockstepHub:
         own, self._own = self._own, []
         return Batch(self.t_ns, own)
 
-    def finish(self) -> None:
-        """End every process's ticks."""
+    def finish(self) -> Batch:
+        """End every process's ticks. What they had to say came with their answers."""
         end = TICK.pack(self.number + 1, self.t_ns, self._tick_ns, 0)
         for publisher in self._publishers.values():
             publisher.put(end)
+        return Batch(self.t_ns, [])
+
+    def accounts(self) -> None:
+        """Every answer holds all that its process has sent since the one before."""
 
     def _readers_of(self, key: str) -> tuple[str, ...]:
         if key not in self._readers:

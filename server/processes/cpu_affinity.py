@@ -8,8 +8,10 @@ waits until the one at work rests (SCHED_BATCH): else nearly every message inter
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from enum import Enum
+from pathlib import Path
 
 SERVER_SHARE = 2
 """The hub and the recorder together use as much time as two robots' processes."""
@@ -23,6 +25,39 @@ def keep(pid: int, core: int) -> None:
     """A process keeps to a core from now on."""
     if CAN_CHOOSE:
         os.sched_setaffinity(pid, {core})
+
+
+class Placement(Enum):
+    """Where and when the processes of a lockstep run."""
+
+    KEPT = "kept"
+    """Each on its core, interrupting nobody there."""
+    FREE = "free"
+    """Wherever and whenever the system likes."""
+
+    @property
+    def other(self) -> Placement:
+        return Placement.FREE if self is Placement.KEPT else Placement.KEPT
+
+
+def place(core_of: Mapping[int, int], cores: Collection[int], placement: Placement) -> None:
+    """Put every thread of these processes (by id) on its process's core, or on any of the cores."""
+    if not CAN_CHOOSE:
+        return
+    for pid, core in core_of.items():
+        if placement is Placement.KEPT:
+            _schedule(pid, {core}, os.SCHED_BATCH)
+        else:
+            _schedule(pid, cores, os.SCHED_OTHER)
+
+
+def _schedule(pid: int, cores: Collection[int], policy: int) -> None:
+    """A thread or a process that has ended meanwhile is passed over."""
+    with suppress(FileNotFoundError, ProcessLookupError):
+        for task in Path(f"/proc/{pid}/task").iterdir():
+            with suppress(ProcessLookupError):
+                os.sched_setaffinity(int(task.name), cores)
+                os.sched_setscheduler(int(task.name), policy, os.sched_param(0))
 
 
 def spread(processes: int, cores: Sequence[int]) -> list[int]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -14,12 +16,14 @@ from server.conductor.carrier import Carrier, Operator, SimulatedCarrier
 from server.hubs.hub import Hub
 from server.hubs.live import LiveHub
 from server.hubs.lockstep import LockstepHub
-from server.processes.cpu_affinity import keeping_to, spread
-from server.processes.run_table import Pace, run_table
-from server.processes.supervisor import ProcessSpec, Supervisor
+from server.processes.cpu_affinity import keeping_to, place, spread
+from server.processes.placement_probe import PlacementProbe
+from server.processes.run_table import Pace, emulated_addresses, run_table
+from server.processes.supervisor import Supervisor
 from server.reporter import Reporter
 from swarm.clock import scaled_clock, unix_clock
-from swarm.config.experiment import Experiment
+from swarm.config.experiment import REAL_LINKS, Experiment
+from swarm.errors import UserError
 from swarm.parallel import available_cores
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import patient
@@ -61,22 +65,42 @@ Warn = Callable[[str], None]
 
 @contextmanager
 def simulated(
-    experiment: Experiment, speed: float | None, warn: Warn, plan: TrialPlan
+    experiment: Experiment, speed: float | None, warn: Warn, plan: TrialPlan, *, emulate: bool = False
 ) -> Iterator[TrialEnvironment]:
-    """Processes on this machine, in lockstep (`speed` None) or so many times as fast as life."""
+    """Processes on this machine, in lockstep (`speed` None) or so many times as fast as life.
+
+    Robots with real links are emulated if `emulate` says so.
+    """
     pace = Pace(speed is None, speed or 1.0, time.monotonic_ns())
     cores = available_cores()
     with (
         socket_endpoint() as endpoint,
         keeping_to(cores[0]) if pace.lockstep else nullcontext(),
         Session(_hub_settings(endpoint, pace)) as session,
+        TemporaryDirectory(prefix="robots-") as sockets,
     ):
-        specs = run_table(experiment, plan.file, endpoint, plan.trial, pace, plan.output)
+        emulated = emulated_addresses(experiment, Path(sockets)) if emulate else {}
+        specs = run_table(experiment, plan.file, endpoint, plan.trial, pace, plan.output, emulated)
         claim(session, _presence())
         with Supervisor(specs, plan.output, spread(len(specs), cores)) as supervisor:
-            hub, flush_every = _hub(experiment, session, pace, specs, supervisor.check, warn)
+            core_of = {os.getpid(): cores[0], **supervisor.core_of}
+            probe = PlacementProbe(partial(place, core_of, cores))
+            hub, flush_every = _hub(experiment, session, pace, supervisor, warn, probe)
             reporter = Reporter(hub)
             yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every)
+
+
+def require_emulation(experiment: Experiment, speed: float | None, *, emulate: bool) -> None:
+    """UserError for a robot that a simulation could not reach, or that cannot be emulated like this."""
+    real = [robot for robot in experiment.robot if robot.driver in REAL_LINKS]
+    if real and not emulate:
+        raise UserError(
+            f"robot {real[0].id!r} has driver {real[0].driver!r}: a simulation needs --emulate and --speed X"
+        )
+    if emulate and speed is None:
+        raise UserError("--emulate needs --speed X: bytes on a link take their own time")
+    if emulate and not real:
+        raise UserError(f"--emulate: no robot's driver is one of {', '.join(REAL_LINKS)}")
 
 
 def _hub_settings(endpoint: str, pace: Pace) -> SessionSettings:
@@ -88,17 +112,26 @@ def _hub(
     experiment: Experiment,
     session: Session,
     pace: Pace,
-    specs: list[ProcessSpec],
-    check: Callable[[], None],
+    supervisor: Supervisor,
     warn: Warn,
+    probe: PlacementProbe,
 ) -> tuple[Hub, int]:
     """The hub of a pace, and how many of its batches come between two flushes."""
     if not pace.lockstep:
         clock = scaled_clock(pace.started_ns, pace.speed)
-        return LiveHub(session, clock, experiment, check, warn), _live_flush(experiment, pace.speed)
-    names, ticks = [spec.name for spec in specs], experiment.ticks_per_exchange
+        live = LiveHub(session, clock, experiment, supervisor.check, warn)
+        return live, _live_flush(experiment, pace.speed)
+    names, ticks = list(supervisor.pids), experiment.ticks_per_exchange
     tick_s = experiment.simulation.tick_s
-    hub = LockstepHub(session, names, tick_s, check, warn, ticks_per_exchange=ticks)
+    hub = LockstepHub(
+        session,
+        names,
+        tick_s,
+        supervisor.check,
+        warn,
+        ticks_per_exchange=ticks,
+        exchanged=probe.exchanged,
+    )
     return hub, LOCKSTEP_BATCHES_BETWEEN_FLUSHES // ticks
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import socket
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from server.processes.supervisor import ProcessSpec
-from swarm.config.experiment import Experiment
+from swarm.config.experiment import REAL_LINKS, Experiment
 
 
 @dataclass(frozen=True)
@@ -24,9 +26,16 @@ class Pace:
 
 
 def run_table(
-    experiment: Experiment, file: Path, endpoint: str, trial: int, pace: Pace, output: Path
+    experiment: Experiment,
+    file: Path,
+    endpoint: str,
+    trial: int,
+    pace: Pace,
+    output: Path,
+    emulated: Mapping[str, str] | None = None,
 ) -> list[ProcessSpec]:
-    """The tracker bridge, and the robots divided over the experiment's number of processes.
+    """The tracker bridge, the emulator if robots are `emulated` (addresses by id), and the robots divided
+    over the experiment's number of processes.
 
     The processes of robots leave a list of all keys that they received (`output`/PROCESS.keys).
     """
@@ -34,12 +43,33 @@ def run_table(
     changed = ("--seed", str(run.seed), "--moves", str(run.moves), "--trial", str(trial))
     common = (str(file), "--connect", endpoint, *changed, *pace.arguments())
     specs = [ProcessSpec("tracker", "tracker_bridge", (*common, "--process", "tracker"))]
+    at = [f"--address={robot}={address}" for robot, address in (emulated or {}).items()]
+    if at:
+        arguments = ("emulate-robots", *common, "--process", "emulator", *at)
+        specs.append(ProcessSpec("emulator", "robot_agent", arguments))
     for number, names in enumerate(_divided(experiment)):
         process = f"robots-{number}"
         heard = ("--keys", str(output / f"{process}.keys"))
-        arguments = (*common, "--process", process, "--robot", ",".join(names), *heard)
+        arguments = (*common, "--process", process, "--robot", ",".join(names), *heard, *at)
         specs.append(ProcessSpec(process, "robot_agent", arguments))
     return specs
+
+
+def emulated_addresses(experiment: Experiment, place: Path) -> dict[str, str]:
+    """An address on this machine for every robot whose driver is a real link."""
+    return {
+        robot.id: _emulated_address(robot.driver, place / robot.id)
+        for robot in experiment.robot
+        if robot.driver in REAL_LINKS
+    }
+
+
+def _emulated_address(link: str, file: Path) -> str:
+    """A file in the place of a serial port, a socket in that of a bus, a port that is free now for Wi-Fi."""
+    if link != "wifi":
+        return str(file) if link == "serial" else f"unix:{file}"
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        return f"127.0.0.1:{probe.getsockname()[1]}"
 
 
 def _divided(experiment: Experiment) -> list[list[str]]:

@@ -64,6 +64,11 @@ class Supervisor:
             raise RunFailedError("; ".join(self._how_ended(name) for name in ended))
 
     @property
+    def core_of(self) -> dict[int, int]:
+        """The core of each process, by process id."""
+        return dict(zip(self.pids.values(), self._cores, strict=True))
+
+    @property
     def pids(self) -> dict[str, int]:
         """Process ids by name."""
         return {name: process.pid for name, process in self._processes.items()}

@@ -1,22 +1,33 @@
-"""Writes what was received, as it was received: the wire bytes are the log bytes."""
+"""Writes what was received, as it was received: the wire bytes are the log bytes.
+
+A log is the same, byte for byte, in every repetition of a simulated run. So a chunk ends where its size or
+the caller says, never when a clock does. What the clock decides is how often the chunk that is still open is
+laid down behind the others, to be overwritten when it has grown: a killed server loses a moment, not a chunk.
+"""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping
+import time
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from google.protobuf.message import Message
-from small_mcap import CompressionType, McapWriter
 
 from server.hubs.hub import Batch
+from server.recording.disk_sync import DiskSync
 from swarm.files import new_file
+from swarm.logs.ending import Sender, ending_records
+from swarm.logs.mcap_writer import LogWriter
 from swarm.messages.topics import topic_of
+from swarm.messages.validation import MAX_PAYLOAD_BYTES
 
-CHUNK_BYTES = 256 * 1024
-"""Smaller ones compress worse; of a larger one more is lost when the recorder is killed."""
+LAID_DOWN_EVERY_S = 0.2
+"""Real seconds of messages that a killed server loses at most; to lay a chunk down takes about 2 ms."""
+MAX_MESSAGE_BYTES = 16 * MAX_PAYLOAD_BYTES
+"""No larger message is stored. Nobody decodes more than MAX_PAYLOAD_BYTES; a little more can be looked at."""
 
 
 class Recorder:
@@ -26,19 +37,30 @@ class Recorder:
     `sequence` is the header's, its publish time the header's, its log time the time of receipt.
     """
 
-    def __init__(self, path: Path, metadata: Mapping[str, Mapping[str, str]]) -> None:
+    def __init__(
+        self,
+        path: Path,
+        metadata: Mapping[str, Mapping[str, str]],
+        monotonic_s: Callable[[], float] = time.monotonic,
+    ) -> None:
         self._file = new_file(path)
+        self._sync = DiskSync(self._file.fileno())
+        self._monotonic_s = monotonic_s
+        self._due_s = 0.0
+        self._laid_down_end = 0
         self.path = path
         self.messages = 0
+        self.oversized: dict[str, int] = {}
+        """Keys with messages above MAX_MESSAGE_BYTES, and the number of them that were left out."""
         self.unknown_keys: dict[str, int] = {}
         """Keys that the key table does not know, with the number of messages that were left out."""
-        self._writer = McapWriter(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
-        self._writer.start(profile="", library="swarm-runtime")
+        self._writer = LogWriter(self._file)
         self._schemas: dict[str, int] = {}
-        self._channels: dict[tuple[str, int], int | None] = {}
+        self._channels: dict[Sender, int | None] = {}
+        self._last: dict[Sender, int] = {}
         self._views: dict[str, int] = {}
-        for name, values in metadata.items():
-            self._writer.add_metadata(name, dict(values))
+        self._add_metadata(metadata)
+        self._file.flush()
 
     def write(self, batch: Batch) -> None:
         """Append a batch; its order is the file's order."""
@@ -49,10 +71,15 @@ class Recorder:
             channel = self._channels[name]
             if channel is None:
                 self._leave_out(key)
+                continue
+            self._last[name] = sequence = header.sequence & 0xFFFFFFFF
+            if len(payload) > MAX_MESSAGE_BYTES:
+                self.oversized[key] = self.oversized.get(key, 0) + 1
             else:
-                sequence = header.sequence & 0xFFFFFFFF
                 self._writer.add_message(channel, batch.t_ns, payload, header.t_ns, sequence)
                 self.messages += 1
+        if self._monotonic_s() >= self._due_s:
+            self._lay_down()
 
     def write_view(self, topic: str, message: Message, t_ns: int) -> None:
         """Append a message that the server made for viewers."""
@@ -63,22 +90,53 @@ class Recorder:
         channel = self._channels[topic, 0]
         assert channel is not None
         self._writer.add_message(channel, t_ns, message.SerializeToString(deterministic=True), t_ns, number)
+        self.messages += 1
 
     def flush(self) -> None:
         """End the chunk and hand everything to the operating system: a killed server loses none of it."""
-        builder = self._writer.chunk_builder
-        assert builder is not None
-        chunk = builder.finalize()
-        if chunk is not None:
-            builder.reset()
-            self._writer.add_chunk(*chunk)
-        self._file.flush()
+        self._writer.end_chunk()
+        self._hand_over()
+
+    @property
+    def disk_error(self) -> str:
+        """Why the disk could not take the log; empty if it could."""
+        return str(self._sync.failure or "")
+
+    def end(self, state: str, reason: str, accounts: Mapping[Sender, int] | None) -> None:
+        """Write how the trial ended, and what every sender has sent by its own account.
+
+        `accounts` is None if the hub had everything that was sent, so that the last number written is the
+        last one sent.
+        """
+        self.flush()
+        self._add_metadata(ending_records(state, reason, self._last if accounts is None else accounts))
 
     def close(self) -> None:
         """Write the index and close the file; a second call does nothing."""
         if not self._file.closed:
-            self._writer.finish()
-            self._file.close()
+            try:
+                self._writer.finish()
+                self._file.truncate()
+                self._file.flush()
+            finally:
+                self._sync.close()
+                self._file.close()
+
+    def _lay_down(self) -> None:
+        """Put the open chunk where it will stand, as it is now; what is written next overwrites it."""
+        self._due_s = self._monotonic_s() + LAID_DOWN_EVERY_S
+        self._laid_down_end = max(self._laid_down_end, self._writer.lay_down())
+
+    def _hand_over(self) -> None:
+        """Leave nothing behind the last record: a chunk that was laid down may have been packed worse."""
+        if self._laid_down_end > self._file.tell():
+            self._file.truncate()
+        self._laid_down_end = 0
+        self._file.flush()
+
+    def _add_metadata(self, metadata: Mapping[str, Mapping[str, str]]) -> None:
+        for name, values in metadata.items():
+            self._writer.add_metadata(name, dict(values))
 
     def _registered(self, key: str, epoch: int) -> int | None:
         """The channel of a key and epoch; None for a key that is not to be logged."""

@@ -19,7 +19,7 @@ from swarm.analysis.plots import plot_curves
 from swarm.analysis.report import report
 from swarm.analysis.results_directory import AnalysisDirectory
 from swarm.analysis.summary import Summary
-from swarm.files import write_json, write_png, write_table, write_text
+from swarm.files import printable, write_json, write_png, write_table, write_text
 from swarm.logs.identity import LogIdentity
 from swarm.logs.parquet import LogContent, Reading, read_logs
 
@@ -48,8 +48,8 @@ class Analysis:
     files: dict[str, Path]
 
     def as_json(self) -> dict[str, Any]:
-        files = {name: str(path) for name, path in self.files.items()}
-        return {"analysis": str(self.directory), "files": files, **self.summary.as_json()}
+        files = {name: printable(path) for name, path in self.files.items()}
+        return {"analysis": printable(self.directory), "files": files, **self.summary.as_json()}
 
 
 def analyze(request: Request, show: Callable[[int], object] = lambda _: None) -> Analysis:
@@ -58,10 +58,10 @@ def analyze(request: Request, show: Callable[[int], object] = lambda _: None) ->
     inputs = find_inputs(request.runs)
     directory = AnalysisDirectory.open(out, inputs)
     reading = read_logs(inputs.logs, directory.tables, request.sampled, show)
-    best_paths = pl.read_parquet(reading.tables["best_paths"])
+    best_paths = pl.read_parquet(reading.tables["best_paths"], glob=False)
     curves = run_curves(best_paths, inputs.shortest_moves)
     notes = [*inputs.notes, *_reading_notes(inputs, reading), *curves.notes]
-    copying = read_copying(reading.tables, {str(log.path): log.cell_m for log in inputs.logs})
+    copying = read_copying(reading.tables, {log.name: log.cell_m for log in inputs.logs})
     summary = Summary(_title(inputs), reading, curves, compare_all(curves), request.threshold, notes, copying)
     files = _write(directory, curves, summary)
     analysis = Analysis(summary, directory.path, files | reading.tables)
@@ -107,7 +107,7 @@ def _title(inputs: Inputs) -> str:
 
 
 def _reading_notes(inputs: Inputs, reading: Reading) -> list[str]:
-    best_paths = pl.read_parquet(reading.tables["best_paths"], columns=["log", "robot"])
+    best_paths = pl.read_parquet(reading.tables["best_paths"], columns=["log", "robot"], glob=False)
     reported = set(best_paths.unique().iter_rows())
     notes = [note for log in reading.logs for note in _damage_notes(log)]
     notes += [note for log in inputs.logs for note in _silent_notes(log, reported)]
@@ -115,7 +115,7 @@ def _reading_notes(inputs: Inputs, reading: Reading) -> list[str]:
 
 
 def _damage_notes(log: LogContent) -> list[str]:
-    name = log.identity.path
+    name = log.identity.name
     notes = [f"{name}: {damage}" for damage in log.damage[:_DAMAGE_SHOWN]]
     if len(log.damage) > _DAMAGE_SHOWN:
         notes.append(f"{name}: {len(log.damage) - _DAMAGE_SHOWN} more damaged places")
@@ -128,5 +128,5 @@ def _damage_notes(log: LogContent) -> list[str]:
 
 def _silent_notes(log: LogIdentity, reported: set[tuple[str, str]]) -> list[str]:
     """Learners that made too few moves for a single point of their curve."""
-    silent = sorted(robot for robot in log.learners if (str(log.path), robot) not in reported)
-    return [f"{log.path}: {robot} reported no best path and is left out" for robot in silent]
+    silent = sorted(robot for robot in log.learners if (log.name, robot) not in reported)
+    return [f"{log.name}: {robot} reported no best path and is left out" for robot in silent]

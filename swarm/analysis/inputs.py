@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,7 +11,8 @@ from pathlib import Path
 from swarm.errors import UserError
 from swarm.logs.identity import LogIdentity, identify
 
-LOG_PATTERN = "trial-*.mcap"
+LOG_NAME = re.compile(r"(trial-\d+)\.mcap", re.ASCII)
+RECOVERED_NAME = re.compile(r"(trial-\d+)\.recovered\.mcap", re.ASCII)
 MANIFEST = "manifest.json"
 
 
@@ -51,13 +53,27 @@ def default_out(runs: Sequence[Path]) -> Path:
 def _logs_of(run: Path, notes: list[str]) -> list[LogIdentity]:
     if not run.is_dir():
         return [identify(run)]
-    paths = sorted(run.glob(LOG_PATTERN))
+    paths = _logs_in(run, notes)
     if not paths:
-        raise UserError(f"{run}: holds no log ({LOG_PATTERN}); is it a run directory?")
+        raise UserError(f"{run}: holds no log (trial-NNN.mcap); is it a run directory?")
     logs = [identify(path) for path in paths]
     _refuse_mixture(run, logs)
     notes.extend(_missing(run, {path.name for path in paths}))
     return logs
+
+
+def _logs_in(run: Path, notes: list[str]) -> list[Path]:
+    """One log a trial: a recovered one only where its original is gone, since all of that is read as well."""
+    try:
+        names = sorted(entry.name for entry in run.iterdir())
+    except OSError as error:
+        raise UserError(f"{run}: cannot be read ({error.strerror})") from error
+    logs = {match[1]: run / match[0] for match in map(LOG_NAME.fullmatch, names) if match}
+    for match in filter(None, map(RECOVERED_NAME.fullmatch, names)):
+        original = logs.setdefault(match[1], run / match[0])
+        if original.name != match[0]:
+            notes.append(f"{run}: {match[0]} is left out, {original.name} itself is read")
+    return [logs[trial] for trial in sorted(logs)]
 
 
 def _refuse_mixture(run: Path, logs: list[LogIdentity]) -> None:

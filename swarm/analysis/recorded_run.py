@@ -64,7 +64,7 @@ class RecordedRun:
         if name not in self.tables:
             raise UserError(f"no table {name!r} in these logs; {nearest(name, self.tables)}")
         reading = self._everything if name in SAMPLED.values() else self._learning
-        return pl.scan_parquet(reading.tables[name])
+        return pl.scan_parquet(reading.tables[name], glob=False)
 
     def learning_curves(self) -> pl.DataFrame:
         """Best path length: a row a condition and point, `mean` over trials with its 95 % interval."""
@@ -102,8 +102,10 @@ class RecordedRun:
 
     @cached_property
     def _curves(self) -> RunCurves:
-        return run_curves(pl.read_parquet(self._learning.tables["best_paths"]), self._inputs.shortest_moves)
+        return run_curves(
+            pl.read_parquet(self._learning.tables["best_paths"], glob=False), self._inputs.shortest_moves
+        )
 
     @cached_property
     def _copying(self) -> Copying:
-        return read_copying(self._learning.tables, {str(log.path): log.cell_m for log in self.logs})
+        return read_copying(self._learning.tables, {log.name: log.cell_m for log in self.logs})

@@ -12,7 +12,7 @@ from swarm.analysis.copying.drawing import moves_text
 from swarm.analysis.copying.report import copying_section
 from swarm.analysis.plots import interval_note
 from swarm.analysis.summary import Summary
-from swarm.logs.completeness import health_totals
+from swarm.logs.completeness import health_totals, log_state
 from swarm.markdown import table, text_number
 from swarm.statistics.paired_tests import LEVEL, Window
 
@@ -154,12 +154,12 @@ def _notes(summary: Summary) -> str:
 def _logs(summary: Summary) -> str:
     rows = [
         [
-            str(log.identity.path),
+            log.identity.name,
             log.identity.run,
             str(log.identity.seed),
             str(log.identity.trial),
             f"{log.messages:,}",
-            "complete" if not log.damage else "damaged",
+            log_state(summary.reading.health, log.identity, bool(log.damage)),
             log.identity.digest[:16],
         ]
         for log in summary.reading.logs

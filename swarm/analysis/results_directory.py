@@ -14,7 +14,7 @@ from typing import Any
 
 from swarm.analysis.inputs import Inputs
 from swarm.errors import RunFailedError, UserError
-from swarm.files import write_json
+from swarm.files import printable, write_json
 
 MADE_BY = "swarm analyze"
 CURE = "choose another --out"
@@ -29,7 +29,9 @@ class AnalysisDirectory:
     @classmethod
     def open(cls, path: Path, inputs: Inputs) -> AnalysisDirectory:
         """Make the directory, or take over one with the same inputs; UserError for any other."""
-        record = {"made_by": MADE_BY, "logs": [_record(log.path, log.digest) for log in inputs.logs]}
+        record = {"made_by": MADE_BY, "logs": [_record(log.name, log.digest) for log in inputs.logs]}
+        if printable(path) != str(path):
+            raise UserError(f"{printable(path)}: Parquet files must have a name that is UTF-8; {CURE}")
         try:
             path.mkdir(parents=True, exist_ok=True)
             if any(path.iterdir()):
@@ -47,8 +49,8 @@ class AnalysisDirectory:
         return self.path / "tables"
 
 
-def _record(path: Path, digest: str) -> dict[str, str]:
-    return {"log": str(path), "sha256": digest}
+def _record(name: str, digest: str) -> dict[str, str]:
+    return {"log": name, "sha256": digest}
 
 
 def _refuse_another(path: Path, asked: Mapping[str, Any]) -> None:

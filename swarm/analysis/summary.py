@@ -84,7 +84,7 @@ def _comparison(found: Comparison | NoComparison) -> dict[str, Any]:
 
 def _log(log: LogContent) -> dict[str, Any]:
     return {
-        "log": str(log.identity.path),
+        "log": log.identity.name,
         "run": log.identity.run,
         "seed": log.identity.seed,
         "trial": log.identity.trial,

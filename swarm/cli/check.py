@@ -10,6 +10,7 @@ import typer
 from swarm.cli.output import print_json
 from swarm.errors import RunFailedError
 from swarm.extras import require_extra
+from swarm.files import printable
 
 
 def check_command(
@@ -31,6 +32,6 @@ def check_command(
             typer.echo(f"note: {remark}")
     if found.faults:
         more = f"; and {len(found.faults) - 3} more" if len(found.faults) > 3 else ""
-        raise RunFailedError(f"{log} is not sound: {'; '.join(found.faults[:3])}{more}")
+        raise RunFailedError(f"{printable(log)} is not sound: {'; '.join(found.faults[:3])}{more}")
     if not json:
-        typer.echo(f"{log}: complete and sound, {found.messages:,} messages")
+        typer.echo(f"{printable(log)}: complete and sound, {found.messages:,} messages")

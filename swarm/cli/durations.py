@@ -44,11 +44,11 @@ def measured_in(runs: list[Path]) -> dict[str, list[float]]:
     from swarm.surrogate.durations import Step, measured
 
     logs = find_inputs(runs).logs
-    goals = {str(log.path): log.grid.goal for log in logs}
+    goals = {log.name: log.grid.goal for log in logs}
     with tempfile.TemporaryDirectory() as folder:
         tables = read_logs(logs, Path(folder), False, lambda _: None).tables
-        moves = pl.read_parquet(tables["moves"]).sort("log", "publish_t_ns", maintain_order=True)
-        carries = pl.read_parquet(tables["carries"])
+        moves = pl.read_parquet(tables["moves"], glob=False).sort("log", "publish_t_ns", maintain_order=True)
+        carries = pl.read_parquet(tables["carries"], glob=False)
     carried_s: dict[str, list[float]] = defaultdict(list)
     for row in carries.iter_rows(named=True):
         carried_s[f"{row['log']}/{row['robot']}"].append(row["publish_t_ns"] * 1e-9)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from io import TextIOWrapper
 
 from swarm.errors import guarded
 from swarm.extras import require_extra
@@ -16,5 +17,7 @@ def _run() -> None:
 
 
 def main() -> None:
-    """Entry point of the `swarm` command."""
+    """Entry point of the `swarm` command. A name that is not UTF-8 is printed with escapes."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
     sys.exit(guarded(_run))

@@ -9,6 +9,7 @@ import typer
 
 from swarm.cli.output import print_json
 from swarm.extras import require_extra
+from swarm.files import printable
 
 
 def recover_command(
@@ -26,8 +27,8 @@ def recover_command(
     whole = out or log.with_suffix(".recovered.mcap")
     found = recover_log(log, whole)
     if json:
-        print_json({"log": str(whole), "messages": found.messages, "lost": list(map(str, found.lost))})
+        print_json({"log": printable(whole), "messages": found.messages, "lost": list(map(str, found.lost))})
         return
     for reason in found.lost:
         typer.echo(f"not read: {reason}")
-    typer.echo(f"wrote {whole}: {found.messages:,} messages")
+    typer.echo(f"wrote {printable(whole)}: {found.messages:,} messages")

@@ -30,12 +30,17 @@ def simulate_command(
     processes: Annotated[
         int | None, typer.Option(help="Processes for the robots; 0 gives each robot its own.")
     ] = None,
+    emulate: Annotated[
+        bool,
+        typer.Option("--emulate", help="Emulate the robots whose driver is a real link; needs --speed X."),
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")] = False,
 ) -> None:
     """Run a simulated swarm: separate processes for agents, tracker and server, and a complete log."""
     require_extra("lab", "small_mcap", "rich")
     options = {"--out": out, "--seed": seed, "--moves": moves, "--speed": speed, "--processes": processes}
     given = [f"{name}={value}" for name, value in options.items() if value is not None]
-    command = module_command("server", str(experiment), *given, *(["--json"] if json else []))
+    flags = [flag for flag, wanted in (("--emulate", emulate), ("--json", json)) if wanted]
+    command = module_command("server", str(experiment), *given, *flags)
     sys.stdout.flush()
     os.execve(sys.executable, command, child_environment())

@@ -68,7 +68,7 @@ def _curves_of(runs: list[Path]) -> dict[str, Curves]:
         logs = find_inputs(runs).logs
         tables = read_logs(logs, Path(folder), False, lambda _: None).tables
         shortest_moves = min(log.shortest_moves for log in logs)
-        return run_curves(pl.read_parquet(tables["best_paths"]), shortest_moves).curves
+        return run_curves(pl.read_parquet(tables["best_paths"], glob=False), shortest_moves).curves
 
 
 def trials_command(

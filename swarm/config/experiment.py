@@ -30,6 +30,10 @@ BEYOND_CORNER_M = 0.05
 """So far in x and in y: the observer's body, of 0.035 m radius, is wholly outside the compartment."""
 
 
+REAL_LINKS = ("serial", "wifi", "i2c", "spi")
+"""Drivers of real robots; a simulation runs them against emulated ones."""
+
+
 class Role(Enum):
     """What a robot does in its compartment."""
 
@@ -103,10 +107,36 @@ class BodySettings:
 
 @dataclass(frozen=True)
 class TrackerSettings:
-    """[tracker]: which tracking system and, for the simulated one, its faults."""
+    """[tracker]: which tracking system, where it is, how its axes lie; and the simulated one's faults."""
 
     backend: str = "sim"
-    """The tracking system; see how-to-add-a-tracker.md."""
+    """The tracking system: see trackers.md, and how-to-add-a-tracker.md for a new one."""
+    server: str = ""
+    """The address of the system's own computer; empty if it sends to all, as Vicon's stream may."""
+    interface: str = "0.0.0.0"
+    """The address of this machine at which its packets arrive."""
+    port: Annotated[int, Between(0, 65_535)] = 0
+    """The port at which they arrive; 0 is the system's usual one."""
+    command_port: Annotated[int, Between(0, 65_535)] = 0
+    """The port at which the server takes questions; 0 is the system's usual one."""
+    multicast: str = ""
+    """The group that the system sends to (Motive: 239.255.42.99); empty if it sends to this machine alone."""
+    version: str = ""
+    """The protocol's version, for a server that does not answer when asked for it."""
+    system: str = ""
+    """Which system the `motioncapture` library talks to: vicon, qualisys, vrpn or optitrack."""
+    options: tuple[str, ...] = ()
+    """More settings of that library, each as `name=value`."""
+    file: str = ""
+    """What `replay` plays (a CSV export, or a log), or the tags and cameras of `overhead`, or the hats."""
+    axes: str = "x y z"
+    """The system's axes that point to the arena's east, north and up: `x -z y` if its y is up."""
+    unit_m: Annotated[float, Between(0, 100)] = 0.0
+    """Metres in one unit of the system; 0 is the unit that the system always uses."""
+    origin_m: tuple[float, float] = (0.0, 0.0)
+    """Where the system's origin lies in the arena; `tracker-bridge calibrate` finds it."""
+    turn_rad: Annotated[float, Between(-2 * math.pi, 2 * math.pi)] = 0.0
+    """How far the system's east is turned, counter-clockwise, from the arena's."""
     rate_hz: Annotated[float, Between(0.1, 1000)] = 10.0
     """Poses of each robot a second."""
     noise_m: Annotated[float, NonNegative] = 0.001
@@ -184,7 +214,15 @@ class RobotSettings:
     south_west_m: tuple[float, float]
     """The compartment's corner in the arena frame."""
     driver: str = "sim"
-    """What moves it; see how-to-add-a-driver.md."""
+    """What moves it: sim, serial, wifi, i2c, spi (robots.md), or one of your own (how-to-add-a-driver.md)."""
+    address: str = ""
+    """Where a real robot is: a serial port or Bluetooth address, HOST:PORT, an I2C bus, an SPI device."""
+    wheel_diameter_m: Annotated[float, Between(0.03, 0.06)] = 0.041
+    """Of a real robot's wheels, as calibrated; 1000 steps are a turn."""
+    wheel_base_m: Annotated[float, Between(0.04, 0.07)] = 0.053
+    """Between a real robot's wheels, as calibrated; published values go from 52 to 57 mm."""
+    camera: str = ""
+    """A real robot's camera: that on its link if empty, /dev/videoN, a folder of pictures, or a video."""
     role: Role = Role.LEARNER
     """A learner learns; an expert follows the shortest path indefinitely."""
     condition: str = ""
@@ -195,6 +233,10 @@ class RobotSettings:
     """The colour of its skirt, by which others see it."""
     paths: tuple[tuple[str, ...], ...] = ()
     """Paths given at the start, each a list of compass moves."""
+    body: str = ""
+    """Its name in a real tracking system; its id if empty."""
+    body_turn_rad: Annotated[float, Between(-2 * math.pi, 2 * math.pi)] = 0.0
+    """From where that system says it faces to where it does, counter-clockwise."""
 
     @property
     def group(self) -> str:

@@ -1,17 +1,31 @@
-"""Is a log complete and sound? Every reason why it is not, in words."""
+"""Is a log complete and sound? Every reason why it is not, in words.
+
+Sound: every checksum is right, the index's too, and every message can be what its key promises. Complete:
+every learning event and order of every sender is there, from its first to its last, across restarts. Where
+a log cannot show that, it is not complete.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import polars as pl
 
+from swarm.files import printable
 from swarm.logs.completeness import HealthTable, health_totals
-from swarm.logs.identity import identify
-from swarm.logs.reader import LogReader
+from swarm.logs.ending import COMPLETE
+from swarm.logs.identity import LogIdentity, identity_of
+from swarm.logs.reader import LogReader, Part
 from swarm.logs.tables import is_tabled, rows
+from swarm.messages import topics
+from swarm.messages.validation import MAX_T_NS
+
+MAY_BE_EMPTY = (topics.COMMAND,)
+"""A robot that stands and knows no pose yet commands nothing but zeros; any other message says something."""
 
 
 @dataclass(frozen=True)
@@ -21,19 +35,29 @@ class LogCheck:
     path: Path
     messages: int
     indexed: bool
-    faults: list[str]
-    """Why it is not sound: damage, no index, learning events lost, duplicates, undecodable messages."""
+    damage: list[str]
+    """Why it is not sound: damage, no index, no checksum, duplicates, undecodable messages."""
+    lacking: list[str]
+    """Why it is not complete: learning events lost, or no telling whether any are."""
     remarks: list[str]
     """What is worth knowing and no fault: restarts, states of which only the newest counts, slow keys."""
 
     @property
+    def faults(self) -> list[str]:
+        """Everything that is wrong."""
+        return self.damage + self.lacking
+
+    @property
     def sound(self) -> bool:
+        """The verdict: neither damaged nor lacking anything."""
         return not self.faults
 
     def as_json(self) -> dict[str, Any]:
         return {
-            "log": str(self.path),
+            "log": printable(self.path),
             "sound": self.sound,
+            "complete": not self.lacking,
+            "intact": not self.damage,
             "messages": self.messages,
             "indexed": self.indexed,
             "faults": self.faults,
@@ -41,24 +65,98 @@ class LogCheck:
         }
 
 
+@dataclass
+class _Contents:
+    """What the messages themselves tell, part by part."""
+
+    identity: LogIdentity
+    health: HealthTable
+    empty: dict[str, int] = field(default_factory=dict)
+    times: dict[str, str] = field(default_factory=dict)
+    """key -> what is wrong with its times."""
+    moves: dict[str, set[int]] = field(default_factory=dict)
+    """key -> the numbers of the moves, which go on across restarts."""
+    _latest_t_ns: dict[str, int] = field(default_factory=dict)
+
+    def add(self, part: Part) -> None:
+        key, rejected = part.channel.key, 0
+        if part.payloads:
+            found = rows(part, self.identity)
+            rejected = len(found.rejected)
+            if part.channel.topic not in MAY_BE_EMPTY:
+                self.empty[key] = self.empty.get(key, 0) + part.payloads.count(b"")
+            if part.channel.topic is topics.MOVE:
+                self.moves.setdefault(key, set()).update(found.tables[0].frame["number"])
+        self.health.add(part, rejected)
+        self._add_times(part)
+
+    def _add_times(self, part: Part) -> None:
+        key, received = part.channel.key, part.receive_t_ns
+        for t_ns in (received, part.publish_t_ns):
+            if t_ns.min() < 0 or t_ns.max() > MAX_T_NS:
+                self.times[key] = "times that cannot be, before the run or centuries after"
+        if received[0] < self._latest_t_ns.get(key, 0) or (np.diff(received) < 0).any():
+            self.times.setdefault(key, "received in another order than recorded")
+        self._latest_t_ns[key] = int(received[-1])
+
+    def damage(self) -> list[str]:
+        empty = [f"{key}: {count} empty messages" for key, count in sorted(self.empty.items()) if count]
+        return empty + [f"{key}: {what}" for key, what in sorted(self.times.items())]
+
+    def swallowed_moves(self, missing: Mapping[str, int]) -> list[str]:
+        """What a restart swallowed, beyond the messages known to be missing: the trial numbers its moves."""
+        counts = {key: max(found) - len(found - {0}) for key, found in self.moves.items() if found}
+        return [
+            f"{key}: {count} moves missing"
+            for key, count in sorted(counts.items())
+            if count > missing.get(key, 0)
+        ]
+
+
 def check_log(path: Path) -> LogCheck:
     """Read every byte and decode every message; LogError for what is no log of a run."""
-    identity = identify(path)
-    reader, health = LogReader(path, is_tabled), HealthTable(identity)
+    about = LogReader(path)
+    about.read_metadata()
+    identity = identity_of(about)
+    reader, contents = LogReader(path, is_tabled), _Contents(identity, HealthTable(identity))
     for part in reader.parts():
-        health.add(part, len(rows(part, identity).rejected) if part.payloads else 0)
-    found = health.frame()
+        contents.add(part)
+    found = contents.health.frame()
+    lacking = [text for text in (identity.ending.fault,) if text]
+    missing = dict(found.group_by("key").agg(pl.col("missing").sum()).iter_rows())
+    lacking += [*_missing(found), *contents.swallowed_moves(missing)]
+    if identity.ending.state == COMPLETE:
+        lacking += _unaccounted(found)
+    damage = [*_damage(reader), *contents.damage(), *_bad_messages(found)]
     indexed = reader.recorded_messages is not None
-    faults = [str(damage) for damage in reader.damage]
-    if not indexed and not faults:
-        faults.append("the log has no index")
-    return LogCheck(path, reader.messages, indexed, faults + _faults(found), _remarks(found))
+    return LogCheck(path, reader.messages, indexed, damage, lacking, _remarks(found))
 
 
-def _faults(health: pl.DataFrame) -> list[str]:
-    every = pl.col("delivery") == "every"
+def _damage(reader: LogReader) -> list[str]:
+    found = [*map(str, reader.damage), *reader.unverified]
+    if reader.recorded_messages is None and not found:
+        found.append("the log has no index")
+    return found
+
+
+def _is_event() -> pl.Expr:
+    return pl.col("delivery") == "every"
+
+
+def _missing(health: pl.DataFrame) -> list[str]:
+    return _counts(health.filter(_is_event()), "missing", "messages missing")
+
+
+def _unaccounted(health: pl.DataFrame) -> Iterable[str]:
+    """Senders of learning events that do not say how many they sent."""
+    silent = health.filter(_is_event() & pl.col("sent").is_null()).unique(["robot", "epoch"])
+    for robot, starts in silent.group_by("robot").len().sort("robot").iter_rows():
+        again = f" in {starts} starts" if starts > 1 else ""
+        yield f"{robot}: gave no account of how much it sent{again}, so that its last messages may be missing"
+
+
+def _bad_messages(health: pl.DataFrame) -> list[str]:
     return [
-        *_counts(health.filter(every), "missing", "messages missing"),
         *_counts(health, "duplicates", "duplicates"),
         *_counts(health, "rejected", "messages that cannot be decoded"),
     ]
@@ -66,7 +164,7 @@ def _faults(health: pl.DataFrame) -> list[str]:
 
 def _remarks(health: pl.DataFrame) -> list[str]:
     totals = health_totals(health)
-    remarks = _counts(health.filter(pl.col("delivery") != "every"), "missing", "messages missing")
+    remarks = _counts(health.filter(~_is_event()), "missing", "messages missing")
     remarks += [f"{key}: below half of its declared rate" for key in totals["slow_keys"]]
     remarks += [f"{key}: of a type that is not known here" for key in totals["unreadable_keys"]]
     restarted = health.filter(pl.col("restart") > 0)["robot"].unique().sort()

@@ -1,7 +1,12 @@
-"""How complete a log is: for each key and each start of its sender, what was seen and what is missing."""
+"""How complete a log is: for each key and each start of its sender, what was seen and what is missing.
+
+A sender numbers its messages of a key from 1. So every number up to the last must be there; the last one is
+what the sender says in its closing account, and without one at least the last that was seen.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import polars as pl
 
+from swarm.logs.ending import COMPLETE, Sender
 from swarm.logs.identity import LogIdentity
 from swarm.logs.reader import S_PER_NS, LogChannel, Part
 from swarm.messages.topics import topic_of
@@ -28,6 +34,7 @@ HEALTH_SCHEMA: dict[str, Any] = {
     "longest_silence_s": pl.Float64,
     "first_sequence": pl.Int64,
     "last_sequence": pl.Int64,
+    "sent": pl.Int64,
     "missing": pl.Int64,
     "gaps": pl.Int64,
     "duplicates": pl.Int64,
@@ -46,6 +53,10 @@ class HealthTable:
     _times: dict[LogChannel, list[npt.NDArray[np.int64]]] = field(default_factory=dict)
     _rejected: dict[LogChannel, int] = field(default_factory=dict)
 
+    @property
+    def _sent(self) -> Mapping[Sender, int]:
+        return self.identity.ending.sent
+
     def add(self, part: Part, rejected: int = 0) -> None:
         """Count a part, and how many of its messages could not be decoded."""
         self._sequences.setdefault(part.channel, []).append(part.sequence.astype(np.uint32))
@@ -55,10 +66,10 @@ class HealthTable:
     def frame(self) -> pl.DataFrame:
         """A row for each key and epoch, in order; `restart` counts a key's epochs from 0.
 
-        `missing` messages lie between the first and the last number seen, in `gaps` stretches; what a
-        sender sent before the recorder heard it shows as a `first_sequence` above 1.
+        `sent` is the last number by the sender's own account, null if it gave none. `missing` messages, in
+        `gaps` stretches, are those from 1 to the last.
         """
-        channels = sorted(self._sequences, key=lambda channel: (channel.key, channel.epoch, channel.id))
+        channels = sorted(self._all_channels(), key=lambda channel: (channel.key, channel.epoch, channel.id))
         restarts: dict[str, int] = {}
         found = []
         for channel in channels:
@@ -68,10 +79,18 @@ class HealthTable:
             [{name: row[name] for name in HEALTH_SCHEMA} for row in found], schema=HEALTH_SCHEMA
         )
 
+    def _all_channels(self) -> list[LogChannel]:
+        """Those seen, and those of which a sender says that they should have been."""
+        seen = {(channel.key, channel.epoch) for channel in self._sequences}
+        unseen = [sender for sender, last in self._sent.items() if last > 0 and sender not in seen]
+        return [*self._sequences, *(LogChannel(0, key, epoch, "", "") for key, epoch in unseen)]
+
     def _row(self, channel: LogChannel) -> dict[str, Any]:
         topic = topic_of(channel.key)
+        sent = self._sent.get((channel.key, channel.epoch))
+        none = [np.empty(0, dtype=np.uint32)]
         return {
-            "log": str(self.identity.path),
+            "log": self.identity.name,
             "seed": self.identity.seed,
             "trial": self.identity.trial,
             "key": channel.key,
@@ -79,22 +98,24 @@ class HealthTable:
             "delivery": topic[0].delivery.value if topic else "",
             "epoch": channel.epoch,
             "declared_hz": topic[0].rate_hz if topic else None,
-            "rejected": self._rejected[channel],
-            "readable": channel.topic is not None or channel.is_for_viewers,
-            **_numbers(np.concatenate(self._sequences[channel])),
-            **_rates(np.concatenate(self._times[channel])),
+            "rejected": self._rejected.get(channel, 0),
+            "readable": channel.topic is not None or channel.is_for_viewers or channel.id == 0,
+            "sent": sent,
+            **_numbers(np.concatenate(self._sequences.get(channel, none)), sent or 0),
+            **_rates(np.concatenate(self._times.get(channel, [np.empty(0, dtype=np.int64)]))),
         }
 
 
-def _numbers(sequence: npt.NDArray[np.uint32]) -> dict[str, int]:
-    """What the sequence numbers, in the order of the log, tell."""
+def _numbers(sequence: npt.NDArray[np.uint32], sent: int) -> dict[str, int | None]:
+    """What the sequence numbers, in the order of the log, tell; `sent` is the last that there must be."""
     once = np.unique(sequence).astype(np.int64)
-    steps = np.diff(once)
+    last = max(sent, int(once[-1]) if len(once) else 0)
+    steps = np.diff(once, prepend=0, append=last + 1)
     return {
         "messages": len(sequence),
-        "first_sequence": int(once[0]),
-        "last_sequence": int(once[-1]),
-        "missing": int((steps - 1).sum()),
+        "first_sequence": int(once[0]) if len(once) else None,
+        "last_sequence": int(once[-1]) if len(once) else None,
+        "missing": int(np.maximum(steps - 1, 0).sum()),
         "gaps": int((steps > 1).sum()),
         "duplicates": len(sequence) - len(once),
         "out_of_order": int((np.diff(sequence.astype(np.int64)) < 0).sum()),
@@ -103,11 +124,25 @@ def _numbers(sequence: npt.NDArray[np.uint32]) -> dict[str, int]:
 
 def _rates(publish_t_ns: npt.NDArray[np.int64]) -> dict[str, float | None]:
     """The mean rate from the first to the last message, and the longest time without one."""
-    lasted_s = float(np.ptp(publish_t_ns.astype(np.float64))) * S_PER_NS
+    lasted_s = float(np.ptp(publish_t_ns.astype(np.float64))) * S_PER_NS if len(publish_t_ns) else 0.0
     if lasted_s <= 0:
         return {"seen_hz": None, "longest_silence_s": None}
     silence_s = float(np.diff(np.sort(publish_t_ns)).max()) * S_PER_NS
     return {"seen_hz": (len(publish_t_ns) - 1) / lasted_s, "longest_silence_s": silence_s}
+
+
+def log_state(health: pl.DataFrame, identity: LogIdentity, damaged: bool) -> str:
+    """In a word: damaged, recovered, interrupted, unfinished, incomplete, or complete."""
+    ending = identity.ending
+    if damaged:
+        return "damaged"
+    if ending.lost:
+        return "recovered"
+    if ending.state != COMPLETE:
+        return ending.state or "unfinished"
+    events = health.filter((pl.col("log") == identity.name) & (pl.col("delivery") == "every"))
+    accounted = events["missing"].sum() == 0 and events["sent"].null_count() == 0
+    return "complete" if accounted else "incomplete"
 
 
 LOW_SHARE = 0.5

@@ -6,11 +6,13 @@ import hashlib
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from swarm.config.experiment import ArenaSettings, Role
+from swarm.files import printable
 from swarm.geometry import Grid
+from swarm.logs.ending import Ending, ending_of
 from swarm.logs.reader import LogError, LogReader, open_log
 
 UNKNOWN = "unknown"
@@ -37,6 +39,12 @@ class LogIdentity:
     """The side of a cell of the grids."""
     grid: Grid
     """The cells of each robot's compartment."""
+    ending: Ending = field(default_factory=Ending)
+
+    @property
+    def name(self) -> str:
+        """The path as tables, reports and JSON have it."""
+        return printable(self.path)
 
     def condition(self, robot: str) -> str:
         """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""
@@ -54,9 +62,18 @@ class LogIdentity:
 
 
 def identify(path: Path) -> LogIdentity:
-    """Read a log's metadata; LogError if it is no log of a run."""
+    """Read a log's metadata; LogError if it is no log of a run, or not of a single one."""
     reader = LogReader(path)
-    metadata = reader.read_metadata()
+    reader.read_metadata()
+    if reader.contradictions:
+        names = ", ".join(sorted(reader.contradictions))
+        raise LogError(path, f"does not say which run it holds: two metadata records that differ ({names})")
+    return identity_of(reader)
+
+
+def identity_of(reader: LogReader) -> LogIdentity:
+    """What the metadata say that have been read; of records that contradict each other the first counts."""
+    path, metadata = reader.path, reader.metadata
     run, robots = metadata.get("run", {}), metadata.get("robots", {})
     experiment = metadata.get("experiment", {}).get("toml", "")
     try:
@@ -74,6 +91,7 @@ def identify(path: Path) -> LogIdentity:
             learners=frozenset(robot for robot, (role, _) in words.items() if role == Role.LEARNER.value),
             cell_m=arena.cell_m,
             grid=Grid(arena.columns, arena.rows),
+            ending=ending_of(metadata),
         )
     except (KeyError, ValueError) as error:
         reason = "does not say which run and trial it holds: was it recorded by swarm-server?"

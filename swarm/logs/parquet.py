@@ -74,7 +74,8 @@ class TableFiles:
         units = parquet_metadata(empty_table(name).columns)
         if parts:
             rest = pl.concat(self._frames.pop(name, []) or [empty_table(name)])
-            pl.concat([*map(pl.scan_parquet, parts), rest.lazy()]).sink_parquet(beside, metadata=units)
+            spilled = [pl.scan_parquet(part, glob=False) for part in parts]
+            pl.concat([*spilled, rest.lazy()]).sink_parquet(beside, metadata=units)
         else:
             whole = pl.concat([empty_table(name), *self._frames.pop(name, [])])
             whole.write_parquet(beside, metadata=units)
@@ -133,9 +134,12 @@ def read_logs(
 
 def _episodes(tables: dict[str, Path]) -> dict[str, pl.DataFrame]:
     """The tables of journeys and, where there were any, of visits."""
-    found = {"journeys": journeys(pl.read_parquet(tables["moves"]))}
+    found = {"journeys": journeys(pl.read_parquet(tables["moves"], glob=False))}
     if "visit_phases" in tables:
-        watched = (pl.read_parquet(tables[name]) for name in ("visit_phases", "observations", "copy_errors"))
+        watched = (
+            pl.read_parquet(tables[name], glob=False)
+            for name in ("visit_phases", "observations", "copy_errors")
+        )
         found["visits"] = visits(*watched)
     return found
 
@@ -147,7 +151,7 @@ def _write(table: pl.DataFrame, path: Path) -> Path:
 
 def _without_empty(tables: dict[str, Path], names: Sequence[str]) -> dict[str, Path]:
     """Remove some tables if all of them are without rows."""
-    if any(pl.scan_parquet(tables[name]).select(pl.len()).collect().item() for name in names):
+    if any(pl.scan_parquet(tables[name], glob=False).select(pl.len()).collect().item() for name in names):
         return tables
     for name in names:
         tables[name].unlink()

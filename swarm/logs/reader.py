@@ -6,31 +6,22 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from io import BufferedReader
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, Message, Metadata, Schema, Statistics
+from mcap.records import Channel, Message, Metadata, Schema
 
 from swarm.errors import UserError
-from swarm.logs.mcap_records import (
-    BROKEN,
-    DamagedChunkError,
-    Entry,
-    FramingError,
-    Record,
-    decoded,
-    indexed_definitions,
-    records,
-    split,
-    unpack,
-)
+from swarm.logs.mcap_chunks import Entry, split
+from swarm.logs.mcap_records import BROKEN, BrokenRecordError, FramingError, Record, decoded
+from swarm.logs.mcap_walk import Walk
 from swarm.messages.topics import Topic, topic_of
 
 S_PER_NS = 1e-9
@@ -129,6 +120,8 @@ def nothing(channel: LogChannel) -> bool:
 
 MAX_EPOCH = 2**63 - 1
 """The largest that the tables' signed columns hold."""
+SAID_ONCE = ("run", "robots", "experiment", "versions", "end", "sent")
+"""Metadata of this project's recorder. Other programs give the same name to several records."""
 
 
 class LogError(UserError):
@@ -164,86 +157,91 @@ class LogReader:
         self.metadata: dict[str, dict[str, str]] = {}
         self.channels: dict[int, LogChannel] = {}
         self.damage: list[Damage] = []
+        self.contradictions: set[str] = set()
+        """Names of metadata records that there are twice, and that differ."""
+        self.unverified: list[str] = []
+        """What no checksum vouches for: nothing in a log of this project's own recorder."""
         self.messages = 0
         self.recorded_messages: int | None = None
         """As the log's index says; None if it has none, as when the recorder was killed."""
         self._wanted = wanted
-        self._schemas: dict[int, str] = {}
+        self._definitions = Definitions()
         self._pending: dict[int, PendingPart] = {}
 
     def parts(self) -> Iterator[Part]:
         """Every message that is whole; LogError for what is no log, or a log without a single message."""
-        with open_log(self.path) as file:
-            self._know_indexed_channels(file)
-            for record in self._records(file):
-                yield from self._take(record)
-            self._compare_with_index(file.tell())
+        for record in self._records():
+            yield from self._take(record)
+        self._compare_with_index()
         yield from [pending.take() for pending in self._pending.values() if pending.entries]
         if self.messages == 0:
             reason = f": {self.damage[0]}" if self.damage else ""
             raise LogError(self.path, f"no message can be read from this log{reason}")
 
     def read_metadata(self) -> dict[str, dict[str, str]]:
-        """What stands before the first message: how the log was made. Reads no further."""
-        with open_log(self.path) as file:
-            for record in self._records(file):
-                if record.opcode in (Opcode.CHUNK, Opcode.MESSAGE, Opcode.DATA_END):
-                    break
-                if record.opcode == Opcode.METADATA:
-                    list(self._take(record))
+        """How the log was made and how it ended, wherever in the file this stands; reads no message."""
+        for record in self._records((Opcode.METADATA,)):
+            list(self._take(record))
         return self.metadata
 
-    def _records(self, file: BinaryIO) -> Iterator[Record]:
-        """The file's records, up to the end or to where it cannot be followed any further."""
-        try:
-            yield from records(file)
-        except FramingError as error:
-            if error.offset_bytes == 0:
+    def _records(self, wanted: Collection[int] | None = None) -> Iterator[Record]:
+        """The file's records, also those beyond a damaged place."""
+        with open_log(self.path) as file:
+            walk = Walk(file, self._note, wanted)
+            self._learn_from_index(walk)
+            try:
+                yield from walk.records()
+            except FramingError as error:
                 raise LogError(self.path, str(error)) from error
-            self._note(error.offset_bytes, error)
+            self.unverified += walk.unverified
+
+    def _learn_from_index(self, walk: Walk) -> None:
+        """A sound index vouches for the channels, so that a damaged one costs no message."""
+        if walk.index.statistics is not None:
+            self.recorded_messages = walk.index.statistics.message_count
+        for definition in walk.index.definitions if walk.index.verified else ():
+            self._define(definition)
 
     def _take(self, record: Record) -> Iterator[Part]:
         """The parts that a record completes. Of one that is damaged nothing is taken."""
         try:
             parts = list(self._contents(record))
         except BROKEN as error:
-            self._note(record.offset_bytes, error)
+            self._note(record.offset_bytes, str(error))
         else:
             yield from parts
 
     def _contents(self, record: Record) -> Iterator[Part]:
-        found = decoded(record.opcode, record.body)
-        if isinstance(found, Message):
-            entry = (found.sequence, found.log_time, found.publish_time, found.data)
-            yield from self._add({found.channel_id: [entry]})
-        elif isinstance(found, Chunk):
-            content = split(
-                unpack(found.compression, found.data, found.uncompressed_size, found.uncompressed_crc)
-            )
+        if record.opcode == Opcode.CHUNK:
+            content = split(record.body)
             for definition in content.definitions:
                 self._define(decoded(definition.opcode, definition.body))
             yield from self._add(content.entries)
+            return
+        found = decoded(record.opcode, record.body) if record.opcode != Opcode.ATTACHMENT else None
+        if isinstance(found, Message):
+            entry = (found.sequence, found.log_time, found.publish_time, found.data)
+            yield from self._add({found.channel_id: [entry]})
         else:
             self._define(found)
 
     def _define(self, record: object) -> None:
-        """Learn what the log says of itself."""
+        """Learn what the log says of itself; BrokenRecordError if it has said something else before."""
         if isinstance(record, Metadata):
-            self.metadata[record.name] = record.metadata
-        elif isinstance(record, Statistics):
-            self.recorded_messages = record.message_count
-        elif isinstance(record, Schema):
-            self._schemas[record.id] = record.name
-        elif isinstance(record, Channel):
-            channel = self._channel(record)
-            if self.channels.setdefault(record.id, channel) != channel:
-                raise DamagedChunkError(f"channel {record.id} is defined twice, for two different keys")
+            first = self.metadata.setdefault(record.name, record.metadata)
+            if record.name in SAID_ONCE and first != record.metadata:
+                self.contradictions.add(record.name)
+                raise BrokenRecordError(f"two metadata records {record.name!r} that differ")
+        elif isinstance(record, Schema | Channel):
+            self._definitions.add(record)
+            if isinstance(record, Channel):
+                self.channels[record.id] = self._channel(record)
 
     def _add(self, entries: dict[int, list[Entry]]) -> Iterator[Part]:
         """The parts that are large enough; nothing is added if any of the channels is unknown."""
         missing = entries.keys() - self.channels.keys()
         if missing:
-            raise DamagedChunkError(f"a message of channel {min(missing)}, which is not defined")
+            raise BrokenRecordError(f"a message of channel {min(missing)}, which is not defined")
         for number, of_channel in entries.items():
             pending = self._pending.get(number) or self._begin(self.channels[number])
             self.messages += len(of_channel)
@@ -257,27 +255,42 @@ class LogReader:
 
     def _channel(self, record: Channel) -> LogChannel:
         epoch = record.metadata.get("epoch", "")
-        schema = self._schemas.get(record.schema_id, "")
+        schema = self._definitions.schema_name(record.schema_id)
         number = int(epoch) if epoch.isascii() and epoch.isdecimal() and len(epoch) < 20 else 0
         return LogChannel(record.id, record.topic, min(number, MAX_EPOCH), schema, record.message_encoding)
 
-    def _know_indexed_channels(self, file: BinaryIO) -> None:
-        """The index repeats every channel: a damaged first chunk then costs no other."""
-        try:
-            for definition in indexed_definitions(file):
-                self._define(definition)
-        except BROKEN as error:
-            self._note(0, f"the index is damaged: {error}")
-        file.seek(0)
-
-    def _compare_with_index(self, offset_bytes: int) -> None:
-        """A record that became another one by a flipped bit shows only here."""
+    def _compare_with_index(self) -> None:
+        """A record that became another one by a flipped bit shows here, too."""
         if not self.damage and self.recorded_messages not in (None, self.messages):
             reason = f"the index promises {self.recorded_messages} messages, {self.messages} were found"
-            self._note(offset_bytes, reason)
+            self._note(self.path.stat().st_size, reason)
 
-    def _note(self, offset_bytes: int, reason: object) -> None:
-        self.damage.append(Damage(offset_bytes, self.messages, str(reason)))
+    def _note(self, offset_bytes: int, reason: str) -> None:
+        self.damage.append(Damage(offset_bytes, self.messages, reason))
+
+
+class Definitions:
+    """The schemas and channels of a log, each number once."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[type, int], Schema | Channel] = {}
+
+    def check(self, record: Schema | Channel) -> None:
+        """BrokenRecordError if its number stands for something else."""
+        known = self._known.get((type(record), record.id), record)
+        if known != record:
+            kind = "channel" if isinstance(record, Channel) else "schema"
+            raise BrokenRecordError(f"{kind} {record.id} is defined twice, for two different things")
+
+    def add(self, record: Schema | Channel) -> bool:
+        """Whether it is new; BrokenRecordError if its number stands for something else."""
+        self.check(record)
+        return self._known.setdefault((type(record), record.id), record) is record
+
+    def schema_name(self, number: int) -> str:
+        """Empty for a schema that is not known."""
+        schema = self._known.get((Schema, number))
+        return schema.name if isinstance(schema, Schema) else ""
 
 
 def open_log(path: Path) -> BufferedReader:

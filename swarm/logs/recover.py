@@ -2,31 +2,23 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, Message, Metadata, Schema
-from small_mcap import CompressionType, McapWriter
+from mcap.records import Attachment, Channel, Message, Metadata, Schema
 
+from swarm.errors import RunFailedError
 from swarm.files import new_file
-from swarm.logs.mcap_records import (
-    BROKEN,
-    DamagedChunkError,
-    FramingError,
-    Record,
-    decoded,
-    indexed_definitions,
-    places,
-    records,
-    unpack,
-)
-from swarm.logs.reader import Damage, LogError, open_log
-
-CHUNK_BYTES = 256 * 1024
-"""What another damage could cost, against how well a chunk is compressed."""
+from swarm.logs.ending import RECOVERED
+from swarm.logs.mcap_chunks import places
+from swarm.logs.mcap_records import BROKEN, BrokenRecordError, FramingError, Record, decoded
+from swarm.logs.mcap_walk import Walk
+from swarm.logs.mcap_writer import LogWriter
+from swarm.logs.reader import Damage, Definitions, LogError, open_log
 
 
 @dataclass(frozen=True)
@@ -40,20 +32,33 @@ class Recovery:
 def recover_log(damaged: Path, whole: Path) -> Recovery:
     """Copy every record that can be read; of a damaged chunk nothing is copied.
 
-    LogError for what is no log or holds no message that can be read, UserError if `whole` cannot be made.
+    LogError for what is no log or holds no message that can be read, UserError if `whole` cannot be made,
+    RunFailedError if there is no room for it.
     """
-    with open_log(damaged) as source, new_file(whole) as target:
-        copy = _Copy(target)
+    with open_log(damaged) as source:
+        target = new_file(whole)
         try:
-            copy.take_all(source)
-            copy.finish()
-        except BaseException:
+            with target:
+                return _recovered(damaged, source, target)
+        except BaseException as error:
             whole.unlink()
+            if isinstance(error, OSError):
+                raise RunFailedError(f"{whole}: cannot be written ({error.strerror})") from error
             raise
+
+
+def _recovered(damaged: Path, source: BinaryIO, target: BinaryIO) -> Recovery:
+    copy = _Copy(target)
+    try:
+        copy.take_all(source)
+    except FramingError as error:
+        raise LogError(damaged, str(error)) from error
     if copy.messages == 0:
-        whole.unlink()
         reason = f": {copy.lost[0]}" if copy.lost else ""
         raise LogError(damaged, f"no message can be read from this log{reason}")
+    copy.finish()
+    target.flush()
+    os.fsync(target.fileno())
     return Recovery(copy.messages, copy.lost)
 
 
@@ -63,34 +68,27 @@ class _Copy:
     def __init__(self, target: BinaryIO) -> None:
         self.messages = 0
         self.lost: list[Damage] = []
-        self._writer = McapWriter(target, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
-        self._writer.start(profile="", library="swarm-runtime")
+        self._definitions = Definitions()
+        self._metadata: dict[str, list[Metadata]] = {}
+        self._writer = LogWriter(target)
 
     def take_all(self, source: BinaryIO) -> None:
-        """Every record up to the index, which is made anew, or to where the log cannot be followed.
+        """Every record; FramingError for what is no log.
 
-        The index repeats the schemas and channels: if it is there, it is believed, because a single one
-        of them has no checksum.
+        A sound index is believed where it repeats schemas and channels, because a single one of them has no
+        checksum. A damaged index is not asked.
         """
-        self._take_definitions_of_index(source)
-        try:
-            for record in records(source):
-                if record.opcode == Opcode.DATA_END:
-                    break
-                self._take(record)
-        except FramingError as error:
-            self._lose(error, error.offset_bytes)
+        walk = Walk(source, self._lose)
+        self._add([*walk.index.definitions] if walk.index.verified else [])
+        for record in walk.records():
+            self._take(record)
 
     def finish(self) -> None:
-        """Write the index."""
+        """Say in the log itself what could not be read, and write the index."""
+        if self.lost:
+            about = {"lost": f"{len(self.lost)} places could not be read, the first: {self.lost[0]}"}
+            self._writer.add_metadata(RECOVERED, about)
         self._writer.finish()
-
-    def _take_definitions_of_index(self, source: BinaryIO) -> None:
-        try:
-            self._add(list(indexed_definitions(source)))
-        except BROKEN as error:
-            self._lose(f"the index is damaged: {error}", 0)
-        source.seek(0)
 
     def _take(self, record: Record) -> None:
         """All of a record, or nothing if any of it makes no sense."""
@@ -99,19 +97,22 @@ class _Copy:
             self._check(found)
             self._add(found)
         except BROKEN as error:
-            self._lose(error, record.offset_bytes)
+            self._lose(record.offset_bytes, str(error))
 
     def _check(self, found: list[object]) -> None:
-        """Raises one of BROKEN for a definition that contradicts an earlier one, or a message without one."""
-        channels = set(self._writer.channels)
+        """BrokenRecordError for a definition that contradicts an earlier one, or a message without one."""
+        schemas, channels = {0, *self._writer.schemas}, set(self._writer.channels)
         for one in found:
-            if isinstance(one, Channel):
-                known = self._writer.channels.get(one.id)
-                if known and (known.topic, known.schema_id) != (one.topic, one.schema_id):
-                    raise DamagedChunkError(f"channel {one.id} is defined twice, for two different keys")
+            if isinstance(one, Schema | Channel):
+                self._definitions.check(one)
+            if isinstance(one, Schema):
+                schemas.add(one.id)
+            elif isinstance(one, Channel):
                 channels.add(one.id)
+                if one.schema_id not in schemas:
+                    raise BrokenRecordError(f"schema {one.schema_id} of channel {one.id} is not defined")
             elif isinstance(one, Message) and one.channel_id not in channels:
-                raise DamagedChunkError(f"a message of channel {one.channel_id}, which is not defined")
+                raise BrokenRecordError(f"a message of channel {one.channel_id}, which is not defined")
 
     def _add(self, found: list[object]) -> None:
         writer = self._writer
@@ -119,24 +120,27 @@ class _Copy:
             if isinstance(one, Message):
                 writer.add_message(one.channel_id, one.log_time, one.data, one.publish_time, one.sequence)
                 self.messages += 1
-            elif isinstance(one, Schema) and one.id not in writer.schemas:
+            elif isinstance(one, Schema) and self._definitions.add(one):
                 writer.add_schema(one.id, one.name, one.encoding, one.data)
-            elif isinstance(one, Channel) and one.id not in writer.channels:
+            elif isinstance(one, Channel) and self._definitions.add(one):
                 about = dict(one.metadata)
                 writer.add_channel(one.id, one.topic, one.message_encoding, one.schema_id, about)
-            elif isinstance(one, Metadata):
+            elif isinstance(one, Metadata) and one not in self._metadata.setdefault(one.name, []):
+                self._metadata[one.name].append(one)
                 writer.add_metadata(one.name, dict(one.metadata))
+            elif isinstance(one, Attachment):
+                writer.add_attachment(one.log_time, one.create_time, one.name, one.media_type, one.data)
 
-    def _lose(self, reason: object, offset_bytes: int) -> None:
-        self.lost.append(Damage(offset_bytes, self.messages, str(reason)))
+    def _lose(self, offset_bytes: int, reason: str) -> None:
+        self.lost.append(Damage(offset_bytes, self.messages, reason))
 
 
 def _contents(record: Record) -> Iterator[object]:
     """What a record holds: one, or all of a chunk."""
-    found = decoded(record.opcode, record.body)
-    if isinstance(found, Chunk):
-        inside = unpack(found.compression, found.data, found.uncompressed_size, found.uncompressed_crc)
-        for opcode, body, end in places(inside):
-            yield decoded(opcode, inside[body:end])
+    if record.opcode == Opcode.CHUNK:
+        for opcode, body, end in places(record.body):
+            yield decoded(opcode, record.body[body:end])
+    elif record.opcode == Opcode.ATTACHMENT and not record.body:
+        raise BrokenRecordError("an attachment is too large to be copied")
     else:
-        yield found
+        yield decoded(record.opcode, record.body)

@@ -13,6 +13,7 @@ _SUFFIXES = {
     "_m": "m",
     "_hz": "Hz",
     "_s": "s",
+    "_v": "V",
 }
 """The units that names end in, the longest first."""
 _UNITS = {"t_s": "s of the run's time"} | dict.fromkeys(
@@ -116,11 +117,22 @@ MEANINGS = {
     "longest_silence_s": "between two messages",
     "first_sequence": "above 1: what was sent before the recorder heard the sender",
     "last_sequence": "the last number seen",
-    "missing": "numbers that lie between the first and the last and were not seen",
+    "sent": "the last number by the sender's own closing account; null if it gave none",
+    "missing": "numbers from 1 to the last, or to `sent`, that were not seen",
     "gaps": "stretches of them",
     "duplicates": "numbers seen again",
     "out_of_order": "messages that came after one with a higher number",
     "rejected": "messages that could not be decoded",
+    "received_t_ns": "the run's time at which it reached the tracker bridge",
+    "source_t_ns": "the time of capture by the tracking system's own clock",
+    "residual_m": "how far the markers were from where they should be",
+    "quality": "the share of the robot's markers that were seen",
+    "battery_v": "0 if the robot does not say",
+    "proximity": "infra-red echoes ps0 to ps7, 0 to 4095: 120 is a wall at 5 cm",
+    "reading_age_s": "since the last good answer over the robot's link",
+    "failed_exchanges": "exchanges with the robot without a good answer so far",
+    "refused_readings": "step counters that the wheels cannot have made",
+    "refused_commands": "commands that came after their deadline",
     "readable": "whether the messages' type is known here",
 }
 """Of a column of this name in any table."""

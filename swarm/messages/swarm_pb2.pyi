@@ -24,7 +24,7 @@ DESCRIPTOR: _descriptor.FileDescriptor
 
 @_typing.final
 class Pose(_message.Message):
-    """Where the tracking system saw a robot, and when."""
+    """Where the tracking system saw a robot, and when. What a system does not say stays 0."""
 
     DESCRIPTOR: _descriptor.Descriptor
 
@@ -32,10 +32,22 @@ class Pose(_message.Message):
     Y_M_FIELD_NUMBER: _builtins.int
     THETA_RAD_FIELD_NUMBER: _builtins.int
     CAPTURED_T_NS_FIELD_NUMBER: _builtins.int
+    RECEIVED_T_NS_FIELD_NUMBER: _builtins.int
+    SOURCE_T_NS_FIELD_NUMBER: _builtins.int
+    RESIDUAL_M_FIELD_NUMBER: _builtins.int
+    QUALITY_FIELD_NUMBER: _builtins.int
     x_m: _builtins.float
     y_m: _builtins.float
     theta_rad: _builtins.float
     captured_t_ns: _builtins.int
+    received_t_ns: _builtins.int
+    """the run's time at which it reached the bridge"""
+    source_t_ns: _builtins.int
+    """the time of capture by the tracking system's own clock"""
+    residual_m: _builtins.float
+    """how far the markers were from where they should be"""
+    quality: _builtins.float
+    """the share of the robot's markers that were seen"""
     def __init__(
         self,
         *,
@@ -43,10 +55,14 @@ class Pose(_message.Message):
         y_m: _builtins.float = ...,
         theta_rad: _builtins.float = ...,
         captured_t_ns: _builtins.int = ...,
+        received_t_ns: _builtins.int = ...,
+        source_t_ns: _builtins.int = ...,
+        residual_m: _builtins.float = ...,
+        quality: _builtins.float = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["captured_t_ns", b"captured_t_ns", "theta_rad", b"theta_rad", "x_m", b"x_m", "y_m", b"y_m"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["captured_t_ns", b"captured_t_ns", "quality", b"quality", "received_t_ns", b"received_t_ns", "residual_m", b"residual_m", "source_t_ns", b"source_t_ns", "theta_rad", b"theta_rad", "x_m", b"x_m", "y_m", b"y_m"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 
@@ -621,11 +637,33 @@ class Status(_message.Message):
     TRACKS_FIELD_NUMBER: _builtins.int
     POSE_AGE_S_FIELD_NUMBER: _builtins.int
     BAD_MESSAGES_FIELD_NUMBER: _builtins.int
+    BATTERY_V_FIELD_NUMBER: _builtins.int
+    PROXIMITY_FIELD_NUMBER: _builtins.int
+    READING_AGE_S_FIELD_NUMBER: _builtins.int
+    FAILED_EXCHANGES_FIELD_NUMBER: _builtins.int
+    REFUSED_READINGS_FIELD_NUMBER: _builtins.int
+    REFUSED_COMMANDS_FIELD_NUMBER: _builtins.int
     activity: _builtins.str
     moves: _builtins.int
     tracks: _builtins.int
     pose_age_s: _builtins.float
     bad_messages: _builtins.int
+    battery_v: _builtins.float
+    """Of real robots only; a simulated one leaves them out.
+    0 if the robot does not say
+    """
+    reading_age_s: _builtins.float
+    """since the last good answer over the link"""
+    failed_exchanges: _builtins.int
+    """exchanges without a good answer so far"""
+    refused_readings: _builtins.int
+    """step counters that the wheels cannot have made"""
+    refused_commands: _builtins.int
+    """commands that came after their deadline"""
+    @_builtins.property
+    def proximity(self) -> _containers.RepeatedScalarFieldContainer[_builtins.int]:
+        """infra-red echoes ps0 to ps7, 0..4095: 120 is a wall at 5 cm"""
+
     def __init__(
         self,
         *,
@@ -634,10 +672,16 @@ class Status(_message.Message):
         tracks: _builtins.int = ...,
         pose_age_s: _builtins.float = ...,
         bad_messages: _builtins.int = ...,
+        battery_v: _builtins.float = ...,
+        proximity: _abc.Iterable[_builtins.int] | None = ...,
+        reading_age_s: _builtins.float = ...,
+        failed_exchanges: _builtins.int = ...,
+        refused_readings: _builtins.int = ...,
+        refused_commands: _builtins.int = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["activity", b"activity", "bad_messages", b"bad_messages", "moves", b"moves", "pose_age_s", b"pose_age_s", "tracks", b"tracks"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["activity", b"activity", "bad_messages", b"bad_messages", "battery_v", b"battery_v", "failed_exchanges", b"failed_exchanges", "moves", b"moves", "pose_age_s", b"pose_age_s", "proximity", b"proximity", "reading_age_s", b"reading_age_s", "refused_commands", b"refused_commands", "refused_readings", b"refused_readings", "tracks", b"tracks"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 

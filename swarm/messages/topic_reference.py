@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from swarm.messages.topics import ALIVE, LOCKSTEP_DONE, LOCKSTEP_TICK, TABLE, Delivery, Topic
+from swarm.messages.topics import ACCOUNT, ALIVE, LOCKSTEP_DONE, LOCKSTEP_TICK, TABLE, Delivery, Topic
 
 _HEAD = """# Everything on the wire
 
@@ -50,8 +50,9 @@ def _mark(yes: bool) -> str:
 
 def _beside_the_table() -> str:
     return (
-        f"Beside the table: `{ALIVE}` are presence tokens (kind is robot, tracker or server), and lockstep\n"
-        f"simulation uses `{LOCKSTEP_TICK}` and `{LOCKSTEP_DONE}`. None of these is logged.\n"
+        f"Beside the table: `{ALIVE}` are presence tokens (kind is robot, tracker or server),\n"
+        f"`{ACCOUNT}` is the closing account of a process that leaves: how many messages of each key it has\n"
+        f"sent. Lockstep simulation uses `{LOCKSTEP_TICK}` and `{LOCKSTEP_DONE}`. None is logged.\n"
     )
 
 

@@ -102,6 +102,8 @@ TABLE: tuple[Topic[Any], ...] = (
 
 LOCKSTEP_TICK = "lockstep/tick/{process}"
 LOCKSTEP_DONE = "lockstep/done"
+ACCOUNT = "account/{name}"
+"""What a process says as it leaves: how many messages of each key it has sent."""
 ALIVE = "alive/{kind}/{name}/{host}/{epoch}"
 """Presence (liveliness tokens): kind is robot, tracker, server or process."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol, TypeVar
 
 from google.protobuf.message import Message
@@ -11,7 +11,8 @@ from swarm.clock import WallClock
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header
-from swarm.messages.topics import Topic
+from swarm.messages.topics import ACCOUNT, Delivery, Topic
+from swarm.runtime.account import pack_account
 from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Inbox, Publisher, Session
 
@@ -46,6 +47,11 @@ class Sequencer:
     def __init__(self) -> None:
         self._sequences: dict[str, int] = {}
 
+    @property
+    def last(self) -> Mapping[str, int]:
+        """Key -> the number of its last message."""
+        return self._sequences
+
     def following(self, key: str) -> int:
         """The number of the key's next message."""
         number = self._sequences.get(key, 0) + 1
@@ -57,19 +63,30 @@ class LivePublisher:
     """Sends messages over the network, each with its sender's epoch, its number and the time."""
 
     def __init__(self, session: Session, clock: WallClock, epoch: int) -> None:
+        self.epoch = epoch
         self._session = session
         self._clock = clock
-        self._epoch = epoch
         self._sequencer = Sequencer()
         self._publishers: dict[str, Publisher] = {}
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         """Send a message under the topic's key, of a robot if it has one."""
         key = topic.key(robot)
-        header = Header(self._epoch, self._sequencer.following(key), self._clock.now_ns())
+        header = Header(self.epoch, self._sequencer.following(key), self._clock.now_ns())
         if key not in self._publishers:
             self._publishers[key] = self._session.publisher(key, topic.delivery)
         self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
+
+    @property
+    def sent(self) -> Mapping[str, int]:
+        """Key -> the number of its last message."""
+        return self._sequencer.last
+
+    def give_account(self, name: str) -> None:
+        """Tell the server, as the last thing, how many messages of each key have been sent."""
+        header = Header(self.epoch, 1, self._clock.now_ns())
+        publisher = self._session.publisher(ACCOUNT.format(name=name), Delivery.EVERY)
+        publisher.put(pack_account(self.sent), attachment=header.pack())
 
 
 class LiveNode:
@@ -93,6 +110,10 @@ class LiveNode:
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         self._live.publish(topic, message, robot)
+
+    def give_account(self, name: str) -> None:
+        """Tell the server, as the last thing, how many messages of each key this process has sent."""
+        self._live.give_account(name)
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):

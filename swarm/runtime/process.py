@@ -83,10 +83,14 @@ def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s:
             claim(session, Presence(kind, name, socket.gethostname(), epoch))
         if arguments.lockstep:
             yield LockstepNode(session, arguments.process)
-        elif arguments.started_ns:
-            yield LiveNode(session, scaled_clock(arguments.started_ns, arguments.speed), period_s, epoch)
         else:
-            yield LiveNode(session, unix_clock(), period_s, epoch)
+            simulated = arguments.started_ns
+            clock = scaled_clock(simulated, arguments.speed) if simulated else unix_clock()
+            node = LiveNode(session, clock, period_s, epoch)
+            try:
+                yield node
+            finally:
+                node.give_account(names[0])
 
 
 def leave_on_signals() -> None:

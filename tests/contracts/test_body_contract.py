@@ -1,16 +1,19 @@
-"""Every robot driver passes the body's contract."""
+"""Every robot driver passes the body's contract: the simulated one, and each link over its own transport."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from robot_agent.drivers.deadline import STOP_WITHIN_S
 from robot_agent.drivers.kinematics import EpuckGeometry, StepUnwrapper, WheelSteps
 from robot_agent.drivers.sim.body import BodyFaults, SimulatedBody
 from swarm.geometry import Compartment, Grid, Pose
 from tests.contracts.examiners import BODY_CHECKS, SECOND_NS, BodyRig
+from tests.support.emulated_robot import LINKS, EmulatedRig
 
 WALLS = Compartment(0.0, 0.0, Grid(10, 10), 0.12)
 
@@ -20,25 +23,34 @@ class SimulatedRig:
 
     def __init__(self) -> None:
         self.geometry = EpuckGeometry()
-        rng = np.random.default_rng(1)
-        self.body = SimulatedBody(self.geometry, BodyFaults(), Pose(0.6, 0.6, 0.0), WALLS, rng)
+        pose, rng = Pose(0.6, 0.6, 0.0), np.random.default_rng(1)
+        self.body = SimulatedBody(self.geometry, BodyFaults(), pose, WALLS, rng, STOP_WITHIN_S)
 
     def run_to(self, t_ns: int) -> None:
         self.body.truth(t_ns)
 
     def motors_stand(self, t_ns: int) -> bool:
-        return self.body.wheel_steps(t_ns) == self.body.wheel_steps(t_ns + SECOND_NS)
+        """As far as a look 10 ms ahead shows."""
+        return self.body.wheel_steps(t_ns) == self.body.wheel_steps(t_ns + SECOND_NS // 100)
 
 
-RIGS: list[Callable[[], BodyRig]] = [
-    SimulatedRig,
-]
+RIGS = ["sim", *("-".join(link) for link in LINKS)]
+
+
+@pytest.fixture(params=RIGS)
+def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[BodyRig]:
+    if request.param == "sim":
+        yield SimulatedRig()
+        return
+    link, model = request.param.split("-")
+    emulated = EmulatedRig(link, model, tmp_path)
+    yield emulated
+    emulated.close()
 
 
 @pytest.mark.parametrize("check", BODY_CHECKS, ids=lambda check: check.__name__.lstrip("_"))
-@pytest.mark.parametrize("rig", RIGS, ids=lambda rig: rig.__name__)
-def test_body_contract(rig: Callable[[], BodyRig], check: Callable[[BodyRig, int], int]) -> None:
-    check(rig(), SECOND_NS)
+def test_body_contract(rig: BodyRig, check: Callable[[BodyRig, int], int]) -> None:
+    check(rig, SECOND_NS)
 
 
 def test_unwrapper_follows_signed_and_unsigned_counters_over_the_wrap() -> None:

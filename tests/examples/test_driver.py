@@ -15,7 +15,7 @@ import pytest
 
 from robot_agent.drivers.kinematics import EpuckGeometry, WheelSpeeds
 from swarm.geometry import Pose
-from tests.contracts.examiners import BODY_CHECKS, SECOND_NS, BodyRig
+from tests.contracts.examiners import BODY_CHECKS, SECOND_NS, TICK_NS, BodyRig
 from tests.support.swarm_runs import ROOT
 
 START = Pose(0.06, 1.14, 0.0)
@@ -53,7 +53,7 @@ class PerfectRig:
         self.body.pose(t_ns)
 
     def motors_stand(self, t_ns: int) -> bool:
-        stand: bool = self.body.wheel_steps(t_ns) == self.body.wheel_steps(t_ns + SECOND_NS)
+        stand: bool = self.body.wheel_steps(t_ns) == self.body.wheel_steps(t_ns + SECOND_NS // 100)
         return stand
 
 
@@ -67,9 +67,11 @@ def test_the_wheels_bring_the_robot_where_it_was_told(perfect_wheels: Any) -> No
     geometry = EpuckGeometry()
     wheels = perfect_wheels.PerfectWheels(geometry, START)
     turning = geometry.sendable(geometry.wheel_speeds(0.0, math.pi / 2))
-    wheels.drive(turning, 0)
+    for t_ns in range(0, SECOND_NS, TICK_NS):
+        wheels.drive(turning, t_ns)
     turned_rad = turning.right_steps_per_s * geometry.step_m / (0.5 * geometry.wheel_base_m)
-    wheels.drive(WheelSpeeds(500.0, 500.0), SECOND_NS)
+    for t_ns in range(SECOND_NS, 3 * SECOND_NS, TICK_NS):
+        wheels.drive(WheelSpeeds(500.0, 500.0), t_ns)
     pose = wheels.pose(3 * SECOND_NS)
     way_m = 1000 * geometry.step_m
     assert pose.theta_rad == pytest.approx(turned_rad)

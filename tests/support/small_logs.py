@@ -10,6 +10,7 @@ from google.protobuf.message import Message
 
 from server.hubs.hub import Batch
 from server.recording.recorder import Recorder
+from swarm.logs.ending import COMPLETE
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header, Item
 
@@ -59,6 +60,8 @@ class SmallLog:
             self.add(f"robot/{robot}/best_path", best, epoch)
 
     def close(self) -> Path:
+        """As at the end of a trial in lockstep, in which all that was sent is heard."""
+        self.recorder.end(COMPLETE, "", None)
         self.recorder.close()
         return self.path
 

@@ -13,10 +13,11 @@ class World:
     def __init__(self) -> None:
         self.now_ns = 5 * NS_PER_S
         self.slept_s: list[float] = []
+        self.oversleeps_s = 0.0
 
     def pass_s(self, seconds: float) -> None:
         self.slept_s.append(seconds)
-        self.now_ns += round(seconds * NS_PER_S)
+        self.now_ns += round((seconds + self.oversleeps_s) * NS_PER_S)
 
 
 def clock_in(world: World, speed: float = 1.0, origin_ns: int = 0) -> WallClock:
@@ -46,6 +47,18 @@ def test_late_ticks_are_left_out_and_counted() -> None:
     world.pass_s(0.35)
     assert next(ticks) == 500_000_000
     assert clock.late_ticks == 3
+
+
+def test_a_process_that_was_stopped_in_its_sleep_goes_on_from_now() -> None:
+    world = World()
+    clock = clock_in(world)
+    ticks = clock.ticks(0.1)
+    assert next(ticks) == 100_000_000
+    world.oversleeps_s = 2.05
+    assert next(ticks) == 2_200_000_000
+    world.oversleeps_s = 0.0
+    assert next(ticks) == 2_300_000_000
+    assert clock.late_ticks == 20
 
 
 def test_work_within_the_period_does_not_shift_the_ticks() -> None:

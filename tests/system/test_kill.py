@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from swarm.logs.reader import LogReader
+from swarm.logs.check import check_log
+from swarm.logs.reader import LogReader, Part
+from swarm.messages import topics
 from swarm.runtime.lockstep import WAKE_S, WAKES_WITHOUT_HUB
 from tests.support.swarm_runs import experiment_text, run_server, write_experiment
 from tests.support.watched_server import WatchedServer
@@ -34,6 +36,10 @@ def messages_in(server: WatchedServer) -> LogReader:
     for _ in reader.parts():
         pass
     return reader
+
+
+def is_move(part: Part) -> bool:
+    return part.channel.topic is topics.MOVE
 
 
 def trial_state(server: WatchedServer) -> str:
@@ -61,6 +67,8 @@ def test_a_killed_server_leaves_nobody_behind_and_a_log_up_to_there(server: Watc
     log = messages_in(server)
     assert log.recorded_messages is None, "there is no index"
     assert log.messages > 1000
+    assert "the log is cut short" in check_log(log.path).damage[0]
+    assert "its server was killed" in check_log(log.path).lacking[0]
     for output in (server.out / "output" / "trial-000").glob("*.log"):
         assert "the server is gone" in output.read_text()
 
@@ -74,6 +82,11 @@ def test_ctrl_c_ends_cleanly(server: WatchedServer) -> None:
     assert not log.damage
     assert log.recorded_messages == log.messages > 1000
     assert trial_state(server) == "interrupted"
+    faults = check_log(log.path).faults
+    assert faults == ["the trial was interrupted: the server was ended by SIGINT"]
+    told = json.loads((server.out / "run.json").read_text())
+    assert told["trials"][0]["messages"] == log.messages
+    assert told["moves"] == sum(len(part.sequence) for part in LogReader(log.path).parts() if is_move(part))
 
 
 @pytest.fixture(scope="module")

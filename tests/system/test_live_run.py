@@ -18,6 +18,7 @@ from robot_agent.checkpoint import Checkpoint
 from server.hubs.live import LiveHub
 from swarm.clock import scaled_clock
 from swarm.config.experiment import Experiment
+from swarm.logs.check import check_log
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
@@ -40,6 +41,7 @@ def test_a_scaled_run_ends_with_every_move_in_the_log(tmp_path: Path) -> None:
         numbers = [move.number for name, move in messages(log, "move") if name == robot]
         assert numbers[:5] == [1, 2, 3, 4, 5]
     assert result["moves"] >= 10
+    assert check_log(log).faults == [], "every process has given account of what it sent"
     assert {state.phase for _, state in messages(log, "state")} >= {pb.RunState.RUNNING, pb.RunState.ENDED}
 
 

@@ -78,3 +78,41 @@ def test_a_tracker_that_repeats_itself_is_frozen(plausibility: Plausibility) -> 
 def test_robots_are_judged_one_by_one(plausibility: Plausibility) -> None:
     assert plausibility.reason_against(seen(1, 2.5, robot="b")) is None
     assert plausibility.reason_against(seen(1, 1.01)) is None
+
+
+FAST_NS = NS_PER_S // 300
+
+
+def fast(number: int, x_m: float, robot: str = "a") -> TrackedPose:
+    """A pose of a tracker of 300 Hz."""
+    return TrackedPose(robot, Pose(x_m, 1.0, 0.0), NS_PER_S + number * FAST_NS)
+
+
+def test_a_speed_no_robot_has_is_refused_however_small_its_steps(plausibility: Plausibility) -> None:
+    """At 2 m/s and 300 Hz a step is 7 mm, less than the slack."""
+    verdicts = [plausibility.reason_against(fast(number, 1.0 + 2.0 * number / 300)) for number in range(150)]
+    assert verdicts[0] is None
+    assert all("jump" in (verdict or "") for verdict in verdicts[100:])
+
+
+def test_a_jump_is_not_believed_sooner_because_poses_come_faster(plausibility: Plausibility) -> None:
+    assert plausibility.reason_against(fast(0, 1.0)) is None
+    verdicts = [plausibility.reason_against(fast(number, 2.5 + 1e-5 * number)) for number in range(1, 200)]
+    refused = sum(verdict is not None for verdict in verdicts)
+    assert refused == pytest.approx(300 * SETTINGS.believe_after_ns / NS_PER_S, abs=2)
+
+
+def test_a_robot_on_anothers_place_is_taken_for_it(plausibility: Plausibility) -> None:
+    assert plausibility.reason_against(fast(0, 1.0)) is None
+    assert plausibility.reason_against(fast(0, 2.0, robot="b")) is None
+    verdicts = [plausibility.reason_against(fast(number, 2.0 + 1e-4 * number)) for number in range(1, 600)]
+    assert all((verdict or "").startswith("swapped with b?") for verdict in verdicts)
+    assert plausibility.reason_against(fast(600, 1.01)) is None
+
+
+def test_a_place_that_another_left_long_ago_may_be_jumped_to(plausibility: Plausibility) -> None:
+    assert plausibility.reason_against(seen(0, 2.0, robot="b")) is None
+    for number in range(1, 20):
+        assert plausibility.reason_against(seen(number, 1.0 + 1e-4 * number)) is None
+    verdicts = [plausibility.reason_against(seen(number, 2.0 + 1e-4 * number)) for number in range(20, 26)]
+    assert [verdict is None for verdict in verdicts] == [False] * 4 + [True] * 2

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from functools import partial
 
 import numpy as np
 
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import TrackerSettings
+from swarm.errors import UserError
 from swarm.geometry import Pose
+from swarm.learning.random import spawned_generator
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages import topics
 from swarm.runtime.subscription import Received
 from swarm.tracker_noise import measured
-from tracker_bridge.backends.interface import TrackedPose
+from tracker_bridge.backends.interface import Backend, Setup, TrackedPose, TrackingSystem
 
 SECONDS_PER_HOUR = 3600.0
 STACK = 256
@@ -88,3 +93,16 @@ class SimulatedTracker:
         if robot not in self._views:
             self._views[robot] = _SimulatedView(self._settings, self._generator(robot))
         return self._views[robot]
+
+
+@contextmanager
+def _opened(setup: Setup) -> Iterator[Backend]:
+    if setup.node is None:
+        raise UserError('[tracker] backend is "sim", which sees robots only within a run')
+    truths = setup.node.subscribe(topics.TRUTH)
+    seed = setup.experiment.run.seed
+    generator = partial(spawned_generator, seed, "", setup.trial, component="tracker")
+    yield SimulatedTracker(setup.experiment.tracker, truths.take, lambda robot: generator(robot=robot))
+
+
+SYSTEM = TrackingSystem(_opened, poll_s=None)

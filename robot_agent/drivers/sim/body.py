@@ -40,6 +40,10 @@ class SimulatedBody:
     in the last bit, on how often anyone looks. Time starts with the first call.
 
     A robot that is placed outside the walls (an observer, carried by hand) is not stopped by them.
+
+    A command holds for `obeys_for_s`; then the wheels stop, unless a fresh one came. This is the watchdog of
+    a real robot's driver, which outlives its agent: here the body and its agent are one process, so that an
+    agent that is killed takes its body along, and one that hangs finds that its robot stood meanwhile.
     """
 
     def __init__(
@@ -49,9 +53,13 @@ class SimulatedBody:
         pose: Pose,
         walls: Compartment,
         rng: np.random.Generator,
+        obeys_for_s: float = math.inf,
     ) -> None:
         self.contacts = 0
         """How often the body has run into a wall, up to the last full slot."""
+        self.radius_m = geometry.body_radius_m
+        self._obeys_for_s = obeys_for_s
+        self._expires_ns = _NEVER_NS
         self._geometry = geometry
         self._track_m = geometry.wheel_base_m
         self._rng = rng
@@ -60,7 +68,7 @@ class SimulatedBody:
         self._right_step_m = geometry.step_m * (1.0 + right_error)
         self._slip_sd = faults.slip_sd
         self._latency_ns = round(faults.latency_s * 1e9)
-        radius_m = geometry.body_radius_m
+        radius_m = self.radius_m
         self._west_m, self._east_m = walls.west_m + radius_m, walls.east_m - radius_m
         self._south_m, self._north_m = walls.south_m + radius_m, walls.north_m - radius_m
         self._x_m, self._y_m, self._theta_rad = pose.x_m, pose.y_m, pose.theta_rad
@@ -79,10 +87,19 @@ class SimulatedBody:
 
     def drive(self, speeds: WheelSpeeds, t_ns: int) -> WheelSpeeds:
         sent = self._geometry.sendable(speeds)
-        self._advance(t_ns)
-        self._commands.append((t_ns + self._latency_ns, sent.left_steps_per_s, sent.right_steps_per_s))
-        self._next_ns = min(self._next_ns, t_ns + self._latency_ns)
+        self.run_wheels(sent, t_ns)
+        if self._obeys_for_s < math.inf:
+            self._expires_ns = t_ns + round(max(self._obeys_for_s * 1e9, self._latency_ns))
         return sent
+
+    def run_wheels(self, speeds: WheelSpeeds, t_ns: int) -> None:
+        """Turn the wheels at exactly these speeds, after the latency, until they are told otherwise."""
+        self._advance(t_ns)
+        self._set_speeds_at(t_ns + self._latency_ns, speeds)
+
+    def _set_speeds_at(self, t_ns: int, speeds: WheelSpeeds) -> None:
+        self._commands.append((t_ns, speeds.left_steps_per_s, speeds.right_steps_per_s))
+        self._next_ns = min(self._next_ns, t_ns)
 
     def wheel_steps(self, t_ns: int) -> WheelSteps:
         ahead_s = self._advance(t_ns)
@@ -120,6 +137,9 @@ class SimulatedBody:
             self._started = True
             self._t_ns = t_ns
         self._latest_ns = t_ns
+        if self._expires_ns < t_ns:
+            self._set_speeds_at(self._expires_ns, STOPPED)
+            self._expires_ns = _NEVER_NS
         while self._next_ns <= t_ns:
             self._move_to(self._next_ns)
             self._obey()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 
+from robot_agent.drivers.deadline import STOP_WITHIN_S
 from robot_agent.drivers.interfaces import Camera, DriverParts
 from robot_agent.drivers.kinematics import WheelSpeeds, WheelSteps
 from robot_agent.drivers.sim.body import BodyFaults, SimulatedBody
@@ -71,6 +72,7 @@ class SimulatedDriver:
             Pose(*compartment.centre(compartment.grid.start), 0.0),
             compartment,
             parts.generator("body"),
+            obeys_for_s=STOP_WITHIN_S,
         )
         self.body = SimulatedRobot(body, parts.node, parts.robot.id)
 

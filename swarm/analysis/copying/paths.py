@@ -68,11 +68,11 @@ class LoggedPath:
 
 def read_paths(tables: Mapping[str, Path]) -> list[LoggedPath]:
     """From the tables of paths, replays, moves and, where there were visits, copying errors."""
-    paths = pl.read_parquet(tables["paths"]).unique(OF_PATH, keep="last", maintain_order=True)
-    replays = pl.read_parquet(tables["replays"]).sort("receive_t_ns", maintain_order=True)
+    paths = pl.read_parquet(tables["paths"], glob=False).unique(OF_PATH, keep="last", maintain_order=True)
+    replays = pl.read_parquet(tables["replays"], glob=False).sort("receive_t_ns", maintain_order=True)
     counted = replays.group_by(OF_PATH).agg(replays=pl.len(), ratio=pl.last("ratio"))
     joined = (
-        _with_moves(paths, pl.read_parquet(tables["moves"]))
+        _with_moves(paths, pl.read_parquet(tables["moves"], glob=False))
         .join(counted, on=OF_PATH, how="left", maintain_order="left")
         .join(_judged(tables), on=OF_PATH, how="left", maintain_order="left")
     )
@@ -123,7 +123,7 @@ def _judged(tables: Mapping[str, Path]) -> pl.DataFrame:
     """The real and the copied moves of every path that the server judged."""
     if "copy_errors" not in tables:
         return pl.DataFrame(schema=dict.fromkeys(OF_PATH[:2], pl.String) | {"path": pl.Int64, **_NO_MOVES})
-    errors = pl.read_parquet(tables["copy_errors"]).filter(pl.col("path") > 0)
+    errors = pl.read_parquet(tables["copy_errors"], glob=False).filter(pl.col("path") > 0)
     return errors.select(*OF_PATH, *_NO_MOVES).unique(OF_PATH, keep="last", maintain_order=True)
 
 
@@ -172,7 +172,8 @@ def seen_positions(tables: Mapping[str, Path], path: LoggedPath, cell_m: float) 
 
 
 def _of_visit(table: Path, path: LoggedPath) -> pl.DataFrame:
-    return pl.scan_parquet(table).filter(log=path.log, robot=path.robot, visit=path.visit).collect()
+    rows = pl.scan_parquet(table, glob=False)
+    return rows.filter(log=path.log, robot=path.robot, visit=path.visit).collect()
 
 
 def _span(segments: pl.DataFrame) -> tuple[int, int]:

@@ -101,7 +101,7 @@ def read_copying(tables: Mapping[str, Path], cells_m: Mapping[str, float]) -> Co
     """Put the tables together; `cells_m`: the side of a cell in each log."""
     paths = read_paths(tables)
     visits, failures = _visits(tables)
-    found = Copying(paths, pl.read_parquet(tables["replays"]), visits, failures, {})
+    found = Copying(paths, pl.read_parquet(tables["replays"], glob=False), visits, failures, {})
     chosen = chosen_copies(found.enacted)
     seen = {path: seen_positions(tables, path, cells_m[path.log]) for path in chosen}
     return Copying(paths, found.replays, visits, failures, seen)
@@ -116,7 +116,7 @@ def _visits(tables: Mapping[str, Path]) -> tuple[int, dict[str, int]]:
     """How many visits ended, and why some taught nothing."""
     if "visits" not in tables:
         return 0, {}
-    done = pl.read_parquet(tables["visits"]).filter(pl.col("done_t_s").is_not_null())
+    done = pl.read_parquet(tables["visits"], glob=False).filter(pl.col("done_t_s").is_not_null())
     vain = Counter(map(reason_kind, done.filter(path=0)["reason"].to_list()))
     return done.height, dict(sorted(vain.items(), key=lambda item: (-item[1], item[0])))
 

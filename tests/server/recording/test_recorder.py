@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -9,9 +10,11 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 from server.hubs.hub import Batch
-from server.recording.recorder import Recorder, digest
+from server.recording.disk_sync import DiskSync
+from server.recording.recorder import LAID_DOWN_EVERY_S, MAX_MESSAGE_BYTES, Recorder, digest
 from swarm.errors import UserError
-from swarm.logs.reader import LogReader
+from swarm.logs.ending import ending_of
+from swarm.logs.reader import LogError, LogReader
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header, Item
 
@@ -110,3 +113,105 @@ def test_a_digest_depends_on_every_byte_and_the_order(tmp_path: Path) -> None:
     other.write_bytes(b"a" * 2_999_999 + b"b")
     assert len({digest([one]), digest([other]), digest([one, other]), digest([other, one])}) == 4
     assert digest([]) == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"
+
+
+class Clock:
+    """A monotonic clock that a test sets."""
+
+    def __init__(self) -> None:
+        self.now_s = 0.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+def as_after_a_kill(recorder: Recorder, copy: Path) -> int:
+    """How many messages can be read of what the operating system has of a log."""
+    copy.write_bytes(recorder.path.read_bytes())
+    try:
+        return read(copy).messages
+    except LogError:
+        return 0
+
+
+def test_a_kill_loses_what_came_since_a_moment_ago(tmp_path: Path) -> None:
+    clock = Clock()
+    recorder = Recorder(tmp_path / "log.mcap", ABOUT, clock)
+    copy, kept = tmp_path / "copy.mcap", []
+    for number in range(1, 31):
+        clock.now_s = number * LAID_DOWN_EVERY_S / 10
+        recorder.write(Batch(number * 1000, [pose_item(number)]))
+        kept.append(as_after_a_kill(recorder, copy))
+    recorder.close()
+    assert kept[0] == 1, "the first at once"
+    assert all(number - held <= 10 for number, held in enumerate(kept, start=1))
+    assert kept == sorted(kept)
+    assert read(recorder.path).messages == 30
+
+
+def test_a_log_is_the_same_whatever_the_clock_says(tmp_path: Path) -> None:
+    """Also where what was laid down was longer than what is left in the end."""
+    logs = []
+    for name, period_s in (("still", 0.0), ("fast", 1.0)):
+        clock = Clock()
+        recorder = Recorder(tmp_path / name, ABOUT, clock)
+        for number in range(1, 3001):
+            clock.now_s += period_s
+            payload = bytes([number % 251]) * (number % 50)
+            item = Item(f"robot/{'ab'[number % 2]}/event", Header(1, number, number), payload)
+            recorder.write(Batch(number * 1000, [item]))
+            if number % 1000 == 0:
+                recorder.flush()
+        recorder.end("complete", "", None)
+        recorder.close()
+        assert read(recorder.path).damage == []
+        logs.append(recorder.path.read_bytes())
+    assert logs[0] == logs[1]
+
+
+def test_what_is_too_large_is_refused_counted_and_costs_nothing_else(tmp_path: Path) -> None:
+    recorder = Recorder(tmp_path / "log.mcap", ABOUT)
+    item = Item("robot/a/event", Header(1, 2, 0), bytes(MAX_MESSAGE_BYTES + 1))
+    recorder.write(Batch(1000, [pose_item(1), item, pose_item(2)]))
+    recorder.end("complete", "", None)
+    recorder.close()
+    assert ending_of(read(recorder.path).metadata).sent["robot/a/event", 1] == 2, "it is missing"
+    assert recorder.oversized == {"robot/a/event": 1}
+    assert read(recorder.path).messages == recorder.messages == 2
+
+
+def test_everything_in_the_log_is_counted(tmp_path: Path) -> None:
+    recorder = Recorder(tmp_path / "log.mcap", ABOUT)
+    recorder.write(Batch(1000, [pose_item(1)]))
+    recorder.write_view("view/log", pb.Event(name="e"), 1000)
+    recorder.close()
+    assert read(recorder.path).messages == recorder.messages == 2
+
+
+def test_what_was_sent_stands_at_the_end(tmp_path: Path) -> None:
+    """By the senders' own account, or, where all of it was heard, by the last number."""
+    for name, accounts, last in (("heard", None, 3), ("told", {("robot/a/pose", 1): 5}, 5)):
+        recorder = Recorder(tmp_path / name, ABOUT)
+        recorder.write(Batch(1000, [pose_item(1), pose_item(3)]))
+        recorder.end("interrupted", "by a test", accounts)
+        recorder.close()
+        ending = ending_of(read(recorder.path).metadata)
+        assert (ending.state, ending.reason) == ("interrupted", "by a test")
+        assert ending.sent == {("robot/a/pose", 1): last}
+
+
+def test_a_log_is_brought_to_the_disk_now_and_then(tmp_path: Path) -> None:
+    with (tmp_path / "file").open("wb") as file:
+        sync = DiskSync(file.fileno(), period_s=0.001)
+        sync.synced.wait()
+        sync.close()
+    assert sync.failure is None
+
+
+def test_a_disk_that_takes_nothing_is_known() -> None:
+    reading, writing = os.pipe()
+    sync = DiskSync(writing, period_s=1000.0)
+    sync.close()
+    os.close(reading)
+    os.close(writing)
+    assert isinstance(sync.failure, OSError), "a pipe cannot be synced"

@@ -1,0 +1,63 @@
+"""How a trial ended, as its log says itself: the server's last word, and what every sender has sent.
+
+The recorder writes two metadata records when it closes a log. `end` has the trial's state and a reason;
+`sent` has "KEY EPOCH" -> the last sequence number, as its sender says. In lockstep the hub has every
+process's whole output; in real time each process gives an account of what it sent as it leaves. A log
+without them was cut short, or its server was killed. `recovered` is in a log that `swarm recover` made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+END, SENT, RECOVERED = "end", "sent", "recovered"
+COMPLETE = "complete"
+MAX_NUMBER = 2**32 - 1
+"""Sequence numbers have 32 bits in a log."""
+Sender = tuple[str, int]
+"""A key, and the epoch of the process that sends it."""
+
+
+@dataclass(frozen=True)
+class Ending:
+    """The last word of a log."""
+
+    state: str = ""
+    """COMPLETE, or what else became of the trial; empty if the log does not say."""
+    reason: str = ""
+    sent: Mapping[Sender, int] = field(default_factory=dict)
+    """The last number of each sender that has given account."""
+    lost: str = ""
+    """What `swarm recover` could not read of the log that this one was made of; empty if nothing."""
+
+    @property
+    def fault(self) -> str:
+        """Why the trial is not known to have come to its end; empty if it is."""
+        if self.lost:
+            return f"recovered from a damaged log: {self.lost}"
+        if not self.state:
+            return "how the trial ended is not recorded: its server was killed, or the log is cut short"
+        return "" if self.state == COMPLETE else f"the trial was {self.state}: {self.reason}"
+
+
+def ending_of(metadata: Mapping[str, Mapping[str, str]]) -> Ending:
+    """What the metadata of a log say of its end."""
+    end = metadata.get(END, {})
+    sent = {}
+    for name, number in metadata.get(SENT, {}).items():
+        key, _, epoch = name.rpartition(" ")
+        if key and _is_number(epoch) and _is_number(number) and int(number) <= MAX_NUMBER:
+            sent[key, int(epoch)] = int(number)
+    lost = metadata.get(RECOVERED, {}).get("lost", "")
+    return Ending(end.get("state", ""), end.get("reason", ""), sent, lost)
+
+
+def ending_records(state: str, reason: str, sent: Mapping[Sender, int]) -> dict[str, dict[str, str]]:
+    """The metadata records of an ending."""
+    numbers = {f"{key} {epoch}": str(number) for (key, epoch), number in sorted(sent.items())}
+    return {END: {"state": state, "reason": reason}, SENT: numbers}
+
+
+def _is_number(text: str) -> bool:
+    return text.isascii() and text.isdecimal() and len(text) < 20

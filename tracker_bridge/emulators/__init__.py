@@ -1,0 +1,1 @@
+"""Tracking systems played by this project, so that a laboratory can rehearse."""

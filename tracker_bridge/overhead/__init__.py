@@ -1,0 +1,1 @@
+"""Robots with printed tags, seen by cameras above the arena."""

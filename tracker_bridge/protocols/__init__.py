@@ -1,0 +1,1 @@
+"""What tracking systems send, byte by byte: no sockets, no arena."""

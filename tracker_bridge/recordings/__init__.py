@@ -1,0 +1,1 @@
+"""Recordings of tracking systems, in the systems' own files."""
