@@ -112,8 +112,8 @@ class PatchMeasurement:
     """How a patch's sides are measured: to a fraction of a pixel, or from its size, the number of its pixels.
 
     `tolerance_px` is how far a patch's upper and lower border may be from where a skirt's would be.
-    `edge_sd_px` is the standard deviation of an edge's error at 320 pixels of width: half as much again as
-    tests/benchmarks/seeing.py finds, since real walls and lamps are less even than the simulated ones.
+    `edge_sd_px` is the standard deviation of an edge's error at 320 pixels of width: a little more than
+    tests/benchmarks/seeing.py finds, since real lamps are less even than the simulated ones.
     """
 
     width: int
@@ -128,7 +128,7 @@ class PatchMeasurement:
 
 MEASUREMENTS = {
     CopyProfile.BEST: PatchMeasurement(
-        320, 240, sub_pixel=True, edge_sd_px=0.12, tolerance_px=1.7, saturated_part=0.38
+        320, 240, sub_pixel=True, edge_sd_px=0.1, tolerance_px=1.7, saturated_part=0.38
     ),
     CopyProfile.PAPER: PatchMeasurement(
         160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6, saturated_part=0.45

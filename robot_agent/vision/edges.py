@@ -32,6 +32,8 @@ BLURRED_PX = 1.3
 """Of the edge from the patch's border: a sharp image's patch is hardly smaller than the skirt."""
 BLURRED_SD_PX = 0.15
 """Of a blurred edge, besides noise: what is behind the skirt is less even over so many pixels."""
+UNEVEN_PART = 1.0
+"""A plateau that is off by so much light moves the edge by half the window times that part of the step."""
 MAX_SHIFT_PX = 6.0
 """Farther from the patch's border than blur and noise explain is the edge of another thing."""
 LOOKS = 3
@@ -177,12 +179,14 @@ class Profile:
         )
 
     def noise_sd_px(self, channel: int) -> float:
-        """Of the column."""
-        high, low, _ = self._plateaus(channel)
+        """Of the column: from the pixels' noise, and from how uneven what is beside the edge is."""
+        high, low, last = self._plateaus(channel)
         pixels, mean = self._light[:, : self._outer, channel], self._mean[: self._outer, channel]
         rows = pixels.shape[0]
         noise = float(((pixels - mean) ** 2).sum()) / max((rows - 1) * self._outer, 1)
-        return math.sqrt(LIKE_NEIGHBOURS * noise / rows * self._window) / max(high - low, 1e-6)
+        uneven = float(mean.var() + self._mean[last:, channel].var()) * (self._window / 2) ** 2
+        variance = LIKE_NEIGHBOURS * noise / rows * self._window + UNEVEN_PART**2 * uneven
+        return math.sqrt(variance) / max(high - low, 1e-6)
 
 
 def _is_pale(colour: NDArray[np.float32], white: NDArray[np.float64]) -> bool:
