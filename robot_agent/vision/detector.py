@@ -48,8 +48,6 @@ BORDER_PX = 6
 """An edge needs this much of the wall beside it."""
 CLEARLY_NEARER = 0.5
 """Chosen: the best candidate must fit where the demonstrator was twice as well as the next."""
-HEIGHT_SD_PX = 1.5
-"""Chosen: pitch, body and shadow move a patch's upper and lower border by a pixel or so each."""
 MIN_WIDTH_PX = 4
 """Chosen: narrower than a skirt anywhere in the arena (15 pixels at 1.55 m, half at 160 x 120)."""
 GROWN_PX = 0.7
@@ -121,6 +119,8 @@ class PatchMeasurement:
     sub_pixel: bool
     edge_sd_px: float
     tolerance_px: float
+    height_sd_px: float
+    """Of a skirt's height: body and shadow move a patch's borders, in its light less than in its pixels."""
     saturated_part: float
     """Of the skirt's saturation: with less, pixels of the wall beside it count, unevenly, as skirt; with
     more, noise takes pixels from it, which matters less where they are only counted."""
@@ -128,10 +128,10 @@ class PatchMeasurement:
 
 MEASUREMENTS = {
     CopyProfile.BEST: PatchMeasurement(
-        320, 240, sub_pixel=True, edge_sd_px=0.1, tolerance_px=1.7, saturated_part=0.38
+        320, 240, sub_pixel=True, edge_sd_px=0.1, tolerance_px=1.7, height_sd_px=0.7, saturated_part=0.38
     ),
     CopyProfile.PAPER: PatchMeasurement(
-        160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6, saturated_part=0.45
+        160, 120, sub_pixel=False, edge_sd_px=0.25, tolerance_px=2.6, height_sd_px=1.5, saturated_part=0.45
     ),
 }
 
@@ -158,7 +158,7 @@ class Detector:
         light = (word_colours() ** self.model.gamma).astype(np.float32)
         self._white = WhiteBalance(self.model, light, demonstrator.white)
         self._colour = SkirtColour(demonstrator.skirt, light, self.profile.saturated_part)
-        self._finder = EdgeFinder(self.model, demonstrator.skirt, light)
+        self._finder = EdgeFinder(self.model, demonstrator.skirt, light, self._colour)
         self._larger = max(1.0, self.model.width / 320)
         self._shape = SkirtShape(demonstrator.skirt, self.model, self.profile.tolerance_px * self._larger)
         self._association = Association()
@@ -288,7 +288,7 @@ class Detector:
         column = (blob.left + blob.right - 1) / 2
         depth_m = self._shape.depth_from_height_m(seen)
         range_m = depth_m / math.cos(self.model.bearing_rad(column)) + radius_m
-        range_sd_m = range_m * HEIGHT_SD_PX * self._larger / seen.height_px
+        range_sd_m = range_m * self.profile.height_sd_px * self._larger / seen.height_px
         left, right = edges
         side, edge = (1, left) if left is not None else (-1, right)
         assert edge is not None

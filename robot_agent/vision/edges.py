@@ -18,7 +18,7 @@ from robot_agent.vision.camera_model import CameraModel
 from robot_agent.vision.demonstrator import Skirt
 from robot_agent.vision.outline import Outline
 from robot_agent.vision.pixels import Words
-from robot_agent.vision.skirt_colour import opponent
+from robot_agent.vision.skirt_colour import SkirtColour, opponent
 
 REACH_PX = 4
 """Half the window around an edge; more than a blur of two pixels, so that it holds nearly the whole step."""
@@ -34,6 +34,10 @@ BLURRED_SD_PX = 0.15
 """Of a blurred edge, besides noise: what is behind the skirt is less even over so many pixels."""
 UNEVEN_PART = 1.0
 """A plateau that is off by so much light moves the edge by half the window times that part of the step."""
+HUE_OFF_PX = 1.6
+"""Chosen: five standard deviations of an edge in hue, which a Bayer mosaic samples at few pixels."""
+HUE_DEVIATIONS = 3.0
+"""Chosen: of the edge's noise, beside that."""
 MAX_SHIFT_PX = 6.0
 """Farther from the patch's border than blur and noise explain is the edge of another thing."""
 LOOKS = 3
@@ -73,11 +77,14 @@ class Edge:
 class EdgeFinder:
     """Finds the sides of a skirt in frames of one camera."""
 
-    def __init__(self, model: CameraModel, skirt: Skirt, light: NDArray[np.float32]) -> None:
+    def __init__(
+        self, model: CameraModel, skirt: Skirt, light: NDArray[np.float32], colour: SkirtColour
+    ) -> None:
         """`light`: linear red, green and blue of each word, shape (65536, 3)."""
         self._model = model
         self._channel = skirt.edge_channel
         self._light = light
+        self._colour = colour
         larger = 2 if model.width >= LARGE_WIDTH else 1
         self._reach, self._plateau = REACH_PX * larger, PLATEAU_PX * larger
 
@@ -136,6 +143,11 @@ class EdgeFinder:
             return None
         if abs(column + 0.5 - start) > MAX_SHIFT_PX * self._reach / REACH_PX:
             return None
+        hue_px = profile.hue_column(self._colour, white) - column
+        if abs(hue_px) > HUE_OFF_PX * self._reach / REACH_PX + HUE_DEVIATIONS * profile.noise_sd_px(
+            self._channel
+        ):
+            return None
         blurred_sd_px = BLURRED_SD_PX if abs(column + 0.5 - start) > BLURRED_PX else 0.0
         noise_sd_px = math.hypot(profile.noise_sd_px(self._channel), blurred_sd_px)
         return Edge(column, (rows.start + rows.stop - 1) / 2, noise_sd_px)
@@ -170,6 +182,13 @@ class Profile:
         lit = float(self._mean[self._outer : last, channel].sum()) - low * (last - self._outer)
         part = min(max(lit / max(high - low, 1e-6), 0.0), float(last - self._outer))
         return self._first - 0.5 + self._outer + part
+
+    def hue_column(self, colour: SkirtColour, white: NDArray[np.float64]) -> float:
+        """Where the skirt's hue begins: coarser than `column`, but nothing dark beside the skirt moves it."""
+        share = colour.share_of(self._mean, white)
+        last = min(self._outer + self._window, share.size - 1)
+        part = float(share[:last].sum()) / max(median(share[last:]), 1e-6)
+        return self._first - 0.5 + last - part
 
     def is_of_skirt(self, channel: int, white: NDArray[np.float64]) -> bool:
         """Whether it steps down from wall or floor, as at a skirt's side."""

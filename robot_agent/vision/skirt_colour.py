@@ -52,8 +52,12 @@ class SkirtColour:
         return self._tables[key]
 
     def share(self, words: Words, white: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How much light of the skirt's hue each row has, in any unit: grey light has none."""
-        hue = (self._light[words].mean(axis=1) / white) @ self._weights
+        """How much light of the skirt's hue each row has, in any unit."""
+        return self.share_of(self._light[words].mean(axis=1), white)
+
+    def share_of(self, colours: NDArray[np.float32], white: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How much light of the skirt's hue is in colours (n, 3): grey light has none, however bright."""
+        hue = (colours / white) @ self._weights
         return np.asarray(np.maximum(hue.real - NEXT_HUE * np.abs(hue.imag), 0.0))
 
     def _made(self, white: NDArray[np.float64]) -> NDArray[np.uint8]:
