@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 from robot_agent.drivers.sim.rendering.colours import colour
@@ -46,13 +47,14 @@ def _camera(experiment: Experiment, robots: tuple[RobotSettings, ...]) -> Iterat
     if any(robot.driver == SIMULATED for robot in robots):
         yield _tried("camera's light", camera.conditions, conditions, ("camera", "conditions"))
     if camera.calibration:
-        from robot_agent.vision.camera_model import load_camera_model
+        from robot_agent.vision.camera_model import load_calibration
 
-        yield _tried_file("camera's calibration", camera.calibration, load_camera_model, "calibration")
+        yield _tried_file("camera's calibration", camera.calibration, load_calibration, "calibration")
     if camera.colours:
         from robot_agent.vision.colour_table import load_colour_table
 
-        yield _tried_file("camera's colours", camera.colours, load_colour_table, "colours")
+        load = partial(load_colour_table, gamma=1.0)  # whether it can be read does not depend on it
+        yield _tried_file("camera's colours", camera.colours, load, "colours")
 
 
 def _tried_file(about: str, file: str, load: Callable[[Path], object], key: str) -> Finding:

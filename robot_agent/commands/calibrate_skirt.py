@@ -1,23 +1,25 @@
-"""`robot-agent calibrate skirt`: a colour table for a skirt, learnt from frames of it."""
+"""`robot-agent calibrate skirt`: a camera's file with the demonstrator that it sees in some frames."""
 
 from __future__ import annotations
 
 import argparse
+import json
+from dataclasses import asdict, replace
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from robot_agent.vision.camera_model import CameraModel, load_camera_model
-from robot_agent.vision.colour_calibration import learn_colour_table
-from robot_agent.vision.colour_table import SKIRT
+from robot_agent.vision.calibration import learn_demonstrator
+from robot_agent.vision.camera_model import CalibrationFile, CameraModel, LightSettings, load_calibration
+from robot_agent.vision.demonstrator import Demonstrator, Skirt
 from robot_agent.vision.frames import PIXEL_FORMATS, Frame
 from swarm.clock import unix_clock
 from swarm.config.arguments import place, seed
 from swarm.errors import UserError
 from swarm.runtime.process import OneLineParser
 
-CHANNELS = ("red", "green", "blue")
 LIVE_FRAMES = 10
 """Enough for a skirt in one light."""
 LIVE_TICK_S = 0.1
@@ -28,20 +30,21 @@ MOST_FRAMES = 100
 
 
 def calibrate_skirt(arguments: argparse.Namespace) -> None:
-    """Learn the table, write it, and say how it came out."""
-    model = load_camera_model(arguments.camera)
+    """Learn the demonstrator, write it beside the camera, and say how good that is."""
+    file = load_calibration(arguments.camera)
+    model, skirt = file.model(), replace(file.skirt or Skirt(), name=arguments.skirt)
     if arguments.simulated:
         frames = _simulated(model, arguments.skirt, arguments.light, arguments.seed)
     elif arguments.live:
         frames = live_frames(arguments.live, model)
     else:
         frames = read_frames(arguments.frames, model)
-    table = learn_colour_table(frames, model, arguments.skirt)
-    table.save(arguments.out)
-    share = float(np.mean(table.kinds == SKIRT))
+    learnt = learn_demonstrator(frames, model, skirt)
+    write_calibration(arguments.out, replace(file, **sections(learnt.demonstrator)))
     print(
-        f"wrote {arguments.out}: {len(frames)} frames, {100 * share:.1f} % of all colours are the skirt's, "
-        f"edges are measured in {CHANNELS[table.edge_channel]}"
+        f"wrote {arguments.out}: seen in {learnt.seen} of {learnt.frames} frames, the range to "
+        f"{100 * learnt.range_sd_part:.1f} % (median), the camera {learnt.pitch_deg:+.1f} degrees up and "
+        f"{learnt.roll_deg:+.1f} degrees rolled against its file"
     )
 
 
@@ -56,6 +59,32 @@ def live_frames(camera: str, model: CameraModel) -> list[Frame]:
     if not frames:
         raise UserError(f"{camera}: no frame in {LIVE_TICK_S * LIVE_TICKS:g} s: is the camera plugged in?")
     return frames
+
+
+def sections(demonstrator: Demonstrator) -> dict[str, Any]:
+    """The tables of a calibration file that tell of the demonstrator."""
+    light = LightSettings(demonstrator.white)
+    return {"skirt": demonstrator.skirt, "hat": demonstrator.hat, "light": light}
+
+
+def write_calibration(path: Path, calibration: CalibrationFile) -> None:
+    """A new TOML file; UserError if it is there already or cannot be made."""
+    tables = [
+        f"[{table}]\n" + "".join(f"{key} = {_toml(value)}\n" for key, value in values.items())
+        for table, values in asdict(calibration).items()
+        if values is not None
+    ]
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write("\n".join(tables))
+    except FileExistsError as error:
+        raise UserError(f"calibration {path} is there already: choose another name or remove it") from error
+    except OSError as error:
+        raise UserError(f"calibration {path}: cannot be written ({error.strerror})") from error
+
+
+def _toml(value: str | float | tuple[float, ...]) -> str:
+    return json.dumps(value)
 
 
 def read_frames(directory: Path, model: CameraModel) -> list[Frame]:
@@ -87,8 +116,8 @@ def _simulated(model: CameraModel, skirt: str, light: str, seed: int) -> list[Fr
 def calibrate_skirt_parser() -> OneLineParser:
     parser = OneLineParser(
         prog="robot-agent calibrate skirt",
-        description="Learn the colour of a skirt. Put the robot that wears it 20 to 50 cm straight ahead of "
-        "the camera, in a white-walled compartment, and keep a few frames.",
+        description="Learn the colours of a demonstrator and of the light, from seconds of frames of the "
+        "robot anywhere in view, 20 to 100 cm before the camera, in a white-walled compartment.",
     )
     parser.add_argument("--camera", type=Path, required=True, metavar="MODEL.toml", help="the camera's file")
     parser.add_argument("--skirt", required=True, metavar="NAME", help="what to call the colour")
@@ -98,5 +127,7 @@ def calibrate_skirt_parser() -> OneLineParser:
     source.add_argument("--simulated", action="store_true", help="frames of the simulated camera")
     parser.add_argument("--light", default="realistic", help="of the simulated camera (%(default)s)")
     parser.add_argument("--seed", type=seed, default=1, help="of the simulated camera (%(default)s)")
-    parser.add_argument("--out", type=place, required=True, metavar="FILE.npz", help="a new colour table")
+    parser.add_argument(
+        "--out", type=place, required=True, metavar="FILE.toml", help="a new calibration file"
+    )
     return parser

@@ -1,4 +1,4 @@
-"""Gives a robot that is to watch others its eyes: camera, colour table, detector.
+"""Gives a robot that is to watch others its eyes: camera, calibration, detector.
 
 Everything here is imported only by robots that watch, so that the others stay small.
 """
@@ -15,10 +15,11 @@ from robot_agent.imitation.visit import BeginVisit, Eyes, Visit
 from robot_agent.navigation.pose_estimator import PoseAt
 from robot_agent.policies.learner import LearningPolicy
 from robot_agent.reports import Reporter
-from robot_agent.vision.camera_model import CameraModel, load_camera_model
-from robot_agent.vision.colour_calibration import learn_colour_table
-from robot_agent.vision.colour_table import ColourTable, load_colour_table
-from robot_agent.vision.detector import MEASUREMENTS, Detector
+from robot_agent.vision.calibration import learn_demonstrator
+from robot_agent.vision.camera_model import CameraModel, load_calibration
+from robot_agent.vision.colour_table import load_colour_table
+from robot_agent.vision.demonstrator import Demonstrator, Skirt
+from robot_agent.vision.detector import Detector, at_profile
 from swarm.config.experiment import Experiment
 from swarm.messages import swarm_pb2 as pb
 
@@ -50,23 +51,26 @@ def visits_of(
 
 def sight_of(parts: DriverParts, driver: Driver) -> tuple[Camera, Detector]:
     """The robot's camera, and a detector trained on the skirt of the robot that it watches."""
-    experiment = parts.experiment
-    profile = experiment.visits.profile
-    size = MEASUREMENTS[profile]
-    model = _model(experiment).scaled(size.width, size.height)
-    skirt = experiment.robot_named(parts.robot.watches).skirt
-    table = _colours(experiment, model, skirt, parts.generator("calibration"))
-    return driver.camera(model), Detector(profile, model, table)
+    skirt = parts.experiment.robot_named(parts.robot.watches).skirt
+    detector = _detector(parts.experiment, skirt, parts.generator("calibration"))
+    return driver.camera(detector.model), detector
 
 
-def _model(experiment: Experiment) -> CameraModel:
+def _detector(experiment: Experiment, skirt: str, rng: np.random.Generator) -> Detector:
     file = experiment.camera.calibration
-    return load_camera_model(Path(file)) if file else BUILT_IN_MODEL
+    calibration = load_calibration(Path(file)) if file else None
+    profile = experiment.visits.profile
+    model = at_profile(profile, calibration.model() if calibration else BUILT_IN_MODEL)
+    known = calibration.demonstrator() if calibration else None
+    size = calibration.skirt if calibration and calibration.skirt else Skirt(skirt)
+    return Detector(profile, model, known or _learnt(experiment, model, size, rng))
 
 
-def _colours(experiment: Experiment, model: CameraModel, skirt: str, rng: np.random.Generator) -> ColourTable:
-    """The table in the settings, or one learnt in good light before the run, as in a laboratory."""
+def _learnt(
+    experiment: Experiment, model: CameraModel, skirt: Skirt, rng: np.random.Generator
+) -> Demonstrator:
+    """From a colour table in the settings, or in good light before the run, as in a laboratory."""
     file = experiment.camera.colours
     if file:
-        return load_colour_table(Path(file))
-    return learn_colour_table(calibration_frames_of(model, skirt, rng), model, skirt)
+        return load_colour_table(Path(file), model.gamma)
+    return learn_demonstrator(calibration_frames_of(model, skirt.name, rng), model, skirt).demonstrator

@@ -22,8 +22,9 @@ from robot_agent.offline.demonstrations import (
     expert_moves,
     random_moves,
 )
-from robot_agent.vision.colour_calibration import learn_colour_table
-from robot_agent.vision.detector import MEASUREMENTS, Detector
+from robot_agent.vision.calibration import learn_demonstrator
+from robot_agent.vision.demonstrator import Skirt
+from robot_agent.vision.detector import Detector, at_profile
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import CopyProfile, Experiment, RobotSettings, Role, RunSettings
 from swarm.geometry import Grid, Move, Pose, wrap_angle_rad
@@ -89,13 +90,11 @@ class Stage:
         walls = experiment.compartment(demonstrator)
         self.room = Rectangle(walls.west_m, walls.south_m, walls.east_m, walls.north_m)
         self.robot = TrackedRobot(experiment, self.place, experiment.compartment(observer), body_rng)
-        profile = MEASUREMENTS[experiment.visits.profile]
-        model = BUILT_IN_MODEL.scaled(profile.width, profile.height)
+        model = at_profile(experiment.visits.profile, BUILT_IN_MODEL)
         light = SimulatedCamera(model, conditions(experiment.camera.conditions), camera_rng)
         frames = calibration_frames(light, self._skirt, CALIBRATION_RANGES_M)
-        self.detector = Detector(
-            experiment.visits.profile, model, learn_colour_table(frames, model, self._skirt)
-        )
+        learnt = learn_demonstrator(frames, model, Skirt(self._skirt))
+        self.detector = Detector(experiment.visits.profile, model, learnt.demonstrator)
         self.camera = SceneCamera(light, self.look)
         self.shown: Callable[[int], Scene | None] = lambda _: Scene((self.room,))
         """What stands before the camera at a tick of the watching, counted from 0; None stalls the camera."""

@@ -14,12 +14,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robot_agent.vision.demonstrator import Demonstrator, Hat, Skirt
 from swarm.config.toml_files import ConfigFile
 from swarm.errors import UserError
 from swarm.geometry import Pose
 
 NEWTON_STEPS = 8
 """More than enough: the error squares at every step, and no lens bends by more than `_bends_gently`."""
+
+EXACT = 1e-12
+"""Of a focal length; far below the rounding of pixels."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +97,8 @@ class CameraModel:
         radius = bent.copy()
         for _ in range(NEWTON_STEPS):
             error = radius * (1 + k1 * radius**2 + k2 * radius**4) - bent
+            if float(np.max(np.abs(error), initial=0.0)) < EXACT:
+                break
             radius -= error / (1 + 3 * k1 * radius**2 + 5 * k2 * radius**4)
         return np.divide(radius, bent, out=np.ones_like(bent), where=bent > 0)
 
@@ -100,6 +106,16 @@ class CameraModel:
         """The direction that a column (fractions allowed) looks at, on the horizon."""
         right, _ = self.slopes(column, self.horizon_row)
         return -math.atan(float(right))
+
+    def level_bearings_rad(
+        self, columns: ArrayLike, rows: ArrayLike, pitch_rad: float, roll_rad: float
+    ) -> list[float]:
+        """The directions that pixels look at, of a camera that is tilted (see `Tilt`)."""
+        right, up = self.slopes(columns, rows)
+        level_right = right * math.cos(roll_rad) - up * math.sin(roll_rad)
+        level_up = right * math.sin(roll_rad) + up * math.cos(roll_rad)
+        ahead = math.cos(pitch_rad) - level_up * math.sin(pitch_rad)
+        return [float(bearing) for bearing in -np.arctan2(level_right, ahead)]
 
     def column(self, bearing_rad: float) -> float:
         """The column at which the horizon has this bearing: the inverse of `bearing_rad`."""
@@ -148,12 +164,31 @@ class MountingSettings:
 
 
 @dataclass(frozen=True)
+class LightSettings:
+    """[light]: a white wall's linear red, green and blue (parts of full scale) at calibration."""
+
+    white: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
 class CalibrationFile:
-    """A calibration file (deploy/cameras/*.toml); every field of it must be there."""
+    """A calibration file (deploy/cameras/*.toml): a camera, and the demonstrator that it watches.
+
+    The three tables of the camera must be there; `robot-agent calibrate` adds those of the demonstrator.
+    """
 
     image: ImageSettings
     lens: LensSettings
     mounting: MountingSettings
+    skirt: Skirt | None = None
+    hat: Hat | None = None
+    light: LightSettings | None = None
+
+    def demonstrator(self) -> Demonstrator | None:
+        """None if the file tells only of the camera, or of a skirt's size but not of its colour."""
+        if self.skirt is None or self.light is None:
+            return None
+        return Demonstrator(self.skirt, self.hat, self.light.white)
 
     def model(self) -> CameraModel:
         """ValueError if no camera is like this."""
@@ -171,10 +206,16 @@ class CalibrationFile:
         )
 
 
-def load_camera_model(path: Path | str) -> CameraModel:
+def load_calibration(path: Path | str) -> CalibrationFile:
     """Read a calibration file; UserError names the file and what is wrong with it."""
-    calibration = ConfigFile(Path(path)).settings(CalibrationFile)
     try:
-        return calibration.model()
+        calibration = ConfigFile(Path(path)).settings(CalibrationFile)
+        calibration.model()
     except ValueError as error:
         raise UserError(f"camera calibration {path}: {error}") from error
+    return calibration
+
+
+def load_camera_model(path: Path | str) -> CameraModel:
+    """The camera of a calibration file; UserError names the file and what is wrong with it."""
+    return load_calibration(path).model()

@@ -185,9 +185,11 @@ class CameraSettings:
     """[camera]: the camera of robots that watch."""
 
     calibration: str = ""
-    """A calibration file (see deploy/cameras); the simulated camera has one built in."""
+    """A calibration file (deploy/cameras), to which `robot-agent calibrate` adds the demonstrator; the
+    simulated camera has one built in."""
     colours: str = ""
-    """A colour table made by `robot-agent calibrate skirt`; the simulated camera learns one at the start."""
+    """A colour table of a former version, for a calibration file without a demonstrator; with neither, the
+    simulated camera learns the demonstrator at the start."""
     conditions: str = "realistic"
     """Light of the simulated camera: realistic, hard, dark or clean."""
 

@@ -20,11 +20,12 @@ import numpy as np
 from robot_agent.drivers.sim.rendering.camera import SimulatedCamera, calibration_frames
 from robot_agent.drivers.sim.rendering.conditions import conditions
 from robot_agent.drivers.sim.rendering.scene import Post, Rectangle, Scene, SceneRobot
+from robot_agent.vision.calibration import learn_demonstrator
 from robot_agent.vision.camera_model import CameraModel, load_camera_model
-from robot_agent.vision.colour_calibration import learn_colour_table
+from robot_agent.vision.demonstrator import SKIRT_RADIUS_M, Skirt
 from robot_agent.vision.detector import MEASUREMENTS, Detection, Detector, NotSeen
 from robot_agent.vision.frames import Frame
-from robot_agent.vision.skirt import SKIRT_RADIUS_M, half_angle_rad
+from robot_agent.vision.skirt import half_angle_rad
 from swarm.config.experiment import CopyProfile
 from swarm.geometry import Pose
 
@@ -54,7 +55,7 @@ def make_pair(
     rng = np.random.default_rng(seed)
     camera = SimulatedCamera(model, conditions(condition), rng, pixel_format)
     frames = calibration_frames(camera, skirt, CALIBRATION_RANGES_M)
-    return camera, Detector(profile, model, learn_colour_table(frames, model, skirt))
+    return camera, Detector(profile, model, learn_demonstrator(frames, model, Skirt(skirt)).demonstrator)
 
 
 def in_view(model: CameraModel, own: Pose, body: Pose, margin_px: float = 8.0) -> bool:

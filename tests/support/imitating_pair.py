@@ -23,8 +23,9 @@ from robot_agent.imitation.replication import Arrival, Command, Drive, Turn, rep
 from robot_agent.navigation.located_robot import LocatedRobot
 from robot_agent.navigation.motion import Motion, MotionSettings
 from robot_agent.navigation.pose_estimator import PoseEstimator
-from robot_agent.vision.colour_calibration import learn_colour_table
-from robot_agent.vision.detector import MEASUREMENTS, Detector
+from robot_agent.vision.calibration import learn_demonstrator
+from robot_agent.vision.demonstrator import Skirt
+from robot_agent.vision.detector import Detector, at_profile
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import CopyProfile, TrackerSettings
 from swarm.geometry import Compartment, Grid, Pose, wrap_angle_rad
@@ -142,11 +143,10 @@ class ImitatingPair:
 
     def imitated(self, commands: Sequence[Command]) -> Imitated:
         """Show the commands, have them watched, and see what the observer drives."""
-        size = MEASUREMENTS[self._profile]
-        model = BUILT_IN_MODEL.scaled(size.width, size.height)
+        model = at_profile(self._profile, BUILT_IN_MODEL)
         camera = SceneCamera(SimulatedCamera(model, conditions("realistic"), self._rng), self._look)
-        table = learn_colour_table(calibration_frames_of(model, "red", self._rng), model, "red")
-        detector = Detector(self._profile, model, table)
+        learnt = learn_demonstrator(calibration_frames_of(model, "red", self._rng), model, Skirt("red"))
+        detector = Detector(self._profile, model, learnt.demonstrator)
 
         def begin(t_ns: int) -> Watch:
             pose_at = self.observer.located.pose_at

@@ -12,8 +12,7 @@ import pytest
 
 from robot_agent.drivers.sim.rendering.camera import SimulatedCamera, calibration_frames
 from robot_agent.drivers.sim.rendering.conditions import conditions
-from robot_agent.vision.camera_model import load_camera_model
-from robot_agent.vision.colour_table import load_colour_table
+from robot_agent.vision.camera_model import load_calibration, load_camera_model
 from robot_agent.vision.pixels import frame_pixels
 from swarm.surrogate.copies import load_copies
 from tests.support.swarm_runs import ROOT
@@ -30,17 +29,17 @@ def calibrate(*arguments: str) -> subprocess.CompletedProcess[str]:
     return robot_agent("calibrate", "--camera", str(CAMERA), "--skirt", "green", *arguments)
 
 
-def test_a_table_is_learnt_from_a_directory_of_frames(tmp_path: Path) -> None:
-    """The same frames, written by a camera, give the same table as the simulated camera's own.
+def test_a_demonstrator_is_learnt_from_a_directory_of_frames(tmp_path: Path) -> None:
+    """The same frames, written by a camera, give the same file as the simulated camera's own.
 
     `calibrate` alone is the older form of `calibrate skirt`.
     """
     camera = SimulatedCamera(load_camera_model(CAMERA), conditions("realistic"), np.random.default_rng(5))
     for number, frame in enumerate(calibration_frames(camera, "green", (0.2, 0.25, 0.3, 0.4, 0.5))):
         (tmp_path / f"{number}.rgb565").write_bytes(frame.data)
-    done = calibrate("--frames", str(tmp_path), "--out", str(tmp_path / "a.npz"))
+    done = calibrate("--frames", str(tmp_path), "--out", str(tmp_path / "a.toml"))
     assert done.returncode == 0, done.stderr
-    assert "5 frames" in done.stdout
+    assert "seen in 5 of 5 frames" in done.stdout
     done = robot_agent(
         "calibrate",
         "skirt",
@@ -52,23 +51,31 @@ def test_a_table_is_learnt_from_a_directory_of_frames(tmp_path: Path) -> None:
         "--seed",
         "5",
         "--out",
-        str(tmp_path / "b.npz"),
+        str(tmp_path / "b.toml"),
     )
     assert done.returncode == 0, done.stderr
-    one, other = load_colour_table(tmp_path / "a.npz"), load_colour_table(tmp_path / "b.npz")
-    assert one.skirt == other.skirt == "green"
-    assert np.array_equal(one.kinds, other.kinds)
+    one, other = load_calibration(tmp_path / "a.toml"), load_calibration(tmp_path / "b.toml")
+    assert one == other
+    assert one.model() == load_camera_model(CAMERA)
+    demonstrator = one.demonstrator()
+    assert demonstrator is not None
+    assert demonstrator.skirt.name == "green"
+    assert demonstrator.skirt.colour[1] > 3 * max(demonstrator.skirt.colour[::2])
+    assert demonstrator.hat is not None
+    assert demonstrator.hat.stands_out
 
 
-def test_a_table_is_learnt_from_a_camera_that_runs(tmp_path: Path) -> None:
+def test_a_demonstrator_is_learnt_from_a_camera_that_runs(tmp_path: Path) -> None:
     """Pictures in a folder stand in for the camera."""
     camera = SimulatedCamera(load_camera_model(CAMERA), conditions("realistic"), np.random.default_rng(5))
     for number, frame in enumerate(calibration_frames(camera, "green", (0.2, 0.3, 0.4))):
         cv2.imwrite(str(tmp_path / f"{number}.png"), cv2.cvtColor(frame_pixels(frame), cv2.COLOR_RGB2BGR))
-    done = calibrate("--live", str(tmp_path), "--out", str(tmp_path / "live.npz"))
+    done = calibrate("--live", str(tmp_path), "--out", str(tmp_path / "live.toml"))
     assert done.returncode == 0, done.stderr
-    assert "3 frames" in done.stdout
-    assert load_colour_table(tmp_path / "live.npz").skirt == "green"
+    assert "of 3 frames" in done.stdout
+    demonstrator = load_calibration(tmp_path / "live.toml").demonstrator()
+    assert demonstrator is not None
+    assert demonstrator.skirt.name == "green"
 
 
 @pytest.mark.parametrize(
@@ -82,15 +89,15 @@ def test_a_table_is_learnt_from_a_camera_that_runs(tmp_path: Path) -> None:
 def test_frames_that_cannot_be_used_are_refused(files: dict[str, bytes], reason: str, tmp_path: Path) -> None:
     for name, content in files.items():
         (tmp_path / name).write_bytes(content)
-    done = calibrate("--frames", str(tmp_path), "--out", str(tmp_path / "new.npz"))
+    done = calibrate("--frames", str(tmp_path), "--out", str(tmp_path / "new.toml"))
     assert done.returncode == 2
     assert reason in done.stderr
     assert len(done.stderr.splitlines()) == 1
-    assert not (tmp_path / "new.npz").exists()
+    assert not (tmp_path / "new.toml").exists()
 
 
 def test_frames_or_simulation_must_be_said(tmp_path: Path) -> None:
-    done = calibrate("--out", str(tmp_path / "new.npz"))
+    done = calibrate("--out", str(tmp_path / "new.toml"))
     assert done.returncode == 2
     assert "robot-agent calibrate skirt --help" in done.stderr
 

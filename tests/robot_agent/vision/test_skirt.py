@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from robot_agent.vision.demonstrator import SKIRT_RADIUS_M
 from robot_agent.vision.skirt import (
-    SKIRT_RADIUS_M,
     covariance,
     covariance_of_one_edge,
     half_angle_rad,

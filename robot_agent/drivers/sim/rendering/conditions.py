@@ -27,6 +27,8 @@ class Conditions:
     readout_s: float = 0.060
     texture: float = 1.0
     distractors: int = 0
+    cast: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    """Of red, green and blue light, beside the drawn one: (1.2, 1, 0.8) is the light of a warm lamp."""
 
 
 _NAMED = {

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_agent.drivers.sim.rendering.colours import COLOURS, Colour, colour
-from robot_agent.vision.skirt import SKIRT_BOTTOM_M, SKIRT_RADIUS_M, SKIRT_TOP_M
+from robot_agent.vision.demonstrator import SKIRT_BOTTOM_M, SKIRT_RADIUS_M, SKIRT_TOP_M
 from swarm.geometry import Pose
 
 
@@ -46,6 +46,8 @@ class SceneRobot:
     pose: Pose
     skirt: str
     velocity_m_s: tuple[float, float] = (0.0, 0.0)
+    hat: str = ""
+    """The colour of a hat that lies on the skirt; without, a grey one shows the boards below it."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +96,8 @@ def body_bands(body: SceneRobot) -> list[Band]:
         (SKIRT_RADIUS_M, SKIRT_BOTTOM_M, SKIRT_TOP_M, colour(body.skirt), 0.06),
         (0.034, 0.052, 0.058, (0.16, 0.16, 0.17), 0.03),
     ]
+    if body.hat:
+        parts[3] = (SKIRT_RADIUS_M, SKIRT_TOP_M, 0.058, colour(body.hat), 0.03)
     x_m, y_m = body.pose.x_m, body.pose.y_m
     return [
         Band(x_m, y_m, radius_m, bottom_m, top_m, paint, shine, body.velocity_m_s)

@@ -29,7 +29,7 @@ class Sensor:
         self._rng = rng
         exposure = math.exp(conditions.exposure_spread * rng.standard_normal())
         cast = np.exp(conditions.cast_spread * rng.standard_normal(3))
-        self._gains = conditions.white_level / WALL[1] * exposure * cast / cast.mean()
+        self._gains = conditions.white_level / WALL[1] * exposure * cast / cast.mean() * conditions.cast
         self._drift = 0.0
         levels = np.linspace(0, 1, TONE_STEPS) ** (1 / model.gamma)
         self._tone = np.round(255 * levels).astype(np.uint8)
