@@ -60,7 +60,7 @@ def test_the_demo_can_start_on_this_machine(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("of_a", "tables", "said"),
     [
-        ('driver = "sin"', "", "there is no driver 'sin'; did you mean 'sim'?"),
+        ('driver = "simm"', "", "there is no driver 'simm'; did you mean 'sim'?"),
         ('skirt = "banana"', "", "unknown colour 'banana'; known: black, blue, "),
         ("", '[tracker]\nbackend = "simm"', "there is no tracking system 'simm'; did you mean 'sim'?"),
         ("", '[camera]\nconditions = "sunny"', "unknown camera conditions 'sunny'; known: clean, dark"),
@@ -126,7 +126,7 @@ def test_logs_that_may_not_fit_are_told_of(tmp_path: Path) -> None:
 
 
 def test_the_doctor_prints_what_it_found_and_the_cure(tmp_path: Path) -> None:
-    good, bad = two_robots(tmp_path / "good"), two_robots(tmp_path / "bad", 'driver = "sin"')
+    good, bad = two_robots(tmp_path / "good"), two_robots(tmp_path / "bad", 'driver = "simm"')
     for file, code in ((good, 0), (bad, 1)):
         place = ["--out", str(tmp_path / "run")]
         shown = CliRunner().invoke(app, ["doctor", str(file), *place])
