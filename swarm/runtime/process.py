@@ -130,7 +130,7 @@ def _await_parents_end() -> None:
         pass
     _say("failed: the server is gone")
     os.kill(os.getpid(), signal.SIGTERM)
-    time.sleep(LEAVE_WITHIN_S)
+    threading.Event().wait(LEAVE_WITHIN_S)
     os._exit(1)
 
 

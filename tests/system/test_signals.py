@@ -7,7 +7,7 @@ import random
 import select
 import signal
 import subprocess
-import time
+import threading
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -72,7 +72,7 @@ def check_leaving(telling: Telling, directory: Path) -> None:
         stderr=subprocess.PIPE,
         text=True,
     )
-    time.sleep(telling.after_s)
+    threading.Event().wait(telling.after_s)
     server.send_signal(telling.number)
     said = server.communicate()[1]
     assert server.returncode in (128 + telling.number, -telling.number), (telling, said)
@@ -111,7 +111,7 @@ def test_told_twice_it_still_ends_in_order(tmp_path: Path) -> None:
     server.send_signal(signal.SIGINT)
     while server.poll() is None:
         server.send_signal(signal.SIGINT)
-        time.sleep(0.001)
+        threading.Event().wait(0.001)
     assert "Traceback" not in server.communicate()[1]
     assert server.returncode in (128 + signal.SIGINT, -signal.SIGINT), "130 in a shell, wherever it came"
     assert not left_behind(str(tmp_path))

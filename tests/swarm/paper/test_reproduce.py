@@ -132,7 +132,7 @@ def test_every_figure_can_be_made(tmp_path: Path) -> None:
         ({"steps": 0}, "--steps 0: give at least 1"),
         ({"steps": -5}, "--steps -5"),
         ({"jobs": 0}, "--jobs 0"),
-        ({"seed": -1}, "--seed -1: give 0 or more"),
+        ({"seed": -1}, "--seed -1: give 0 to "),
         ({"steps": 5}, "--steps 5 is too short: .* evaluated every 10 steps"),
         ({"runs": 10**9}, "would need .* GB of memory"),
         ({"steps": 10**15}, "would need .* GB of memory"),

@@ -8,6 +8,7 @@ from swarm.messages.header import Header
 from swarm.runtime.subscription import BACK_AFTER, Subscription
 
 POSE = pb.Pose(x_m=0.5, y_m=0.25, theta_rad=1.0).SerializeToString()
+MOVE = pb.Move(number=1).SerializeToString()
 
 
 def header(sequence: int, epoch: int = 1) -> Header:
@@ -76,7 +77,7 @@ def test_a_bad_message_of_a_later_epoch_does_not_silence_the_sender() -> None:
 def test_a_sender_that_restarts_with_its_clock_set_back_is_accepted() -> None:
     subscription = Subscription(topics.MOVE)
     for epoch, sequence in ((9000, 1), (9000, 2), (5000, 1), (5000, 2), (9000, 3), (5000, 3)):
-        subscription.put("robot/a/move", header(sequence, epoch), b"")
+        subscription.put("robot/a/move", header(sequence, epoch), MOVE)
     accepted = [(one.header.epoch, one.header.sequence) for one in subscription.take()]
     assert accepted == [(9000, 1), (9000, 2), (5000, 1), (5000, 2), (5000, 3)]
     assert subscription.duplicates == 1, "the dead one's late message"
@@ -85,9 +86,9 @@ def test_a_sender_that_restarts_with_its_clock_set_back_is_accepted() -> None:
 def test_a_late_message_of_a_dead_process_silences_nobody_for_good() -> None:
     """It comes to a subscriber that never heard that process, in between the messages of the living one."""
     subscription = Subscription(topics.MOVE)
-    subscription.put("robot/a/move", header(1, epoch=5), b"")
-    subscription.put("robot/a/move", header(70, epoch=4), b"")
+    subscription.put("robot/a/move", header(1, epoch=5), MOVE)
+    subscription.put("robot/a/move", header(70, epoch=4), MOVE)
     for sequence in range(2, 20):
-        subscription.put("robot/a/move", header(sequence, epoch=5), b"")
+        subscription.put("robot/a/move", header(sequence, epoch=5), MOVE)
     accepted = [one.header.sequence for one in subscription.take() if one.header.epoch == 5]
     assert accepted == [1, *range(1 + BACK_AFTER, 20)]
