@@ -15,21 +15,18 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from swarm.config.limits import LARGEST_SEED, MOST_MOVES, MOST_PROCESSES
+from swarm.config.consistency import check_consistency
+from swarm.config.limits import BEYOND_CORNER_M, LARGEST_SEED, MOST_MOVES, MOST_PROCESSES
 from swarm.config.toml_files import Between, ConfigFile
-from swarm.errors import nearest
 from swarm.geometry import Compartment, Grid, Pose
 from swarm.learning.controller import Controller
 from swarm.learning.learner import Learner
 from swarm.learning.memory import Approach, ImitationMemory, ObservedPath
 from swarm.learning.q_table import QTable
 from swarm.learning.random import spawned_generator
-from swarm.messages.topics import is_id
 
 OLDEST_POSE_S = 0.9
 """A tenth below the second at which a robot stands for want of a newer pose."""
-BEYOND_CORNER_M = 0.05
-"""So far in x and in y: the observer's body, of 0.035 m radius, is wholly outside the compartment."""
 
 
 REAL_LINKS = ("serial", "wifi", "i2c", "spi")
@@ -280,7 +277,7 @@ class Experiment:
     @classmethod
     def _of(cls, file: ConfigFile) -> Experiment:
         experiment = file.settings(cls)
-        _check(experiment, file)
+        check_consistency(experiment, file)
         return experiment
 
     def changed(
@@ -350,74 +347,3 @@ class Experiment:
     @property
     def learners(self) -> tuple[RobotSettings, ...]:
         return tuple(robot for robot in self.robot if robot.role is Role.LEARNER)
-
-
-def _check(experiment: Experiment, file: ConfigFile) -> None:
-    if not is_id(experiment.run.name):
-        raise file.error(("run", "name"), f"'name' is {experiment.run.name!r}; {_ID_RULE}")
-    if not experiment.learners:
-        raise file.error(("robot", 0, "role"), "no robot is a learner: there is nothing to learn or to plot")
-    for number, robot in enumerate(experiment.robot):
-        _check_robot(experiment, number, robot, file)
-
-
-_ID_RULE = "an id starts with a small letter and has at most 32 of a-z, 0-9, _ and -"
-
-
-def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
-    where = ("robot", number)
-    for name, value in (("id", robot.id), ("condition", robot.group)):
-        if not is_id(value):
-            raise file.error((*where, name), f"{name!r} is {value!r}; {_ID_RULE}")
-    if robot.paths and robot.role is not Role.LEARNER:
-        raise file.error((*where, "paths"), f"{robot.id!r} is no learner: it cannot be given paths")
-    if len(robot.paths) > experiment.learning.capacity:
-        raise file.error((*where, "paths"), f"{len(robot.paths)} paths do not fit in [learning] capacity")
-    try:
-        robot.given_paths()
-    except ValueError as error:
-        raise file.error((*where, "paths"), str(error)) from error
-    _check_watching(experiment, number, robot, file)
-    _check_place(experiment, number, robot, file)
-
-
-def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
-    where = ("robot", number, "watches")
-    known = [other.id for other in experiment.robot if other.id != robot.id]
-    if robot.watches and robot.role is not Role.LEARNER:
-        raise file.error(where, f"{robot.id!r} is no learner: it cannot watch")
-    if robot.watches and robot.watches not in known:
-        whom = nearest(robot.watches, known) if known else "there is no other robot"
-        raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {whom}")
-    if robot.watches:
-        _check_observers_place(experiment, robot, file)
-
-
-def _check_observers_place(experiment: Experiment, robot: RobotSettings, file: ConfigFile) -> None:
-    demonstrator, arena = experiment.robot_named(robot.watches), experiment.arena
-    place = experiment.observers_place(demonstrator)
-    if not (0 <= place.x_m <= arena.width_m and 0 <= place.y_m <= arena.height_m):
-        where = ("robot", experiment.robot.index(demonstrator), "south_west_m")
-        raise file.error(
-            where,
-            f"{robot.id!r} would watch {robot.watches!r} from ({place.x_m:.2f}, {place.y_m:.2f}) m, which is "
-            f"off the floor: leave {BEYOND_CORNER_M:g} m east and south of that compartment",
-        )
-
-
-def _check_place(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
-    where = ("robot", number, "south_west_m")
-    place, arena = experiment.compartment(robot), experiment.arena
-    slack_m = 1e-9
-    if (
-        min(place.west_m, place.south_m) < -slack_m
-        or place.east_m > arena.width_m + slack_m
-        or place.north_m > arena.height_m + slack_m
-    ):
-        size = f"{arena.width_m:g} x {arena.height_m:g} m"
-        raise file.error(where, f"the compartment of {robot.id!r} reaches out of the arena of {size}")
-    for other in experiment.robot[:number]:
-        if other.id == robot.id:
-            raise file.error(("robot", number, "id"), f"two robots are called {robot.id!r}")
-        if place.overlaps(experiment.compartment(other)):
-            raise file.error(where, f"the compartments of {other.id!r} and {robot.id!r} overlap")

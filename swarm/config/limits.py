@@ -16,3 +16,5 @@ MOST_JOBS = 10_000
 """Processes at a time: more than a cluster's scheduler hands out well."""
 MOST_TRIALS = 1_000_000
 """Of the abstract engine: some days of a machine's time."""
+BEYOND_CORNER_M = 0.05
+"""An observer's place in x and in y: its body, of 0.035 m radius, is wholly outside the compartment."""

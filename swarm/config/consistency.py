@@ -1,0 +1,84 @@
+"""What no single value of an experiment file shows: ids, who watches whom, compartments that overlap."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from swarm.config.limits import BEYOND_CORNER_M
+from swarm.config.toml_files import ConfigFile
+from swarm.errors import nearest
+from swarm.messages.topics import is_id
+
+if TYPE_CHECKING:
+    from swarm.config.experiment import Experiment, RobotSettings
+
+_ID_RULE = "an id starts with a small letter and has at most 32 of a-z, 0-9, _ and -"
+
+
+def check_consistency(experiment: Experiment, file: ConfigFile) -> None:
+    """UserError, with its line in the file, about what no single value shows."""
+    if not is_id(experiment.run.name):
+        raise file.error(("run", "name"), f"'name' is {experiment.run.name!r}; {_ID_RULE}")
+    if not experiment.learners:
+        raise file.error(("robot", 0, "role"), "no robot is a learner: there is nothing to learn or to plot")
+    for number, robot in enumerate(experiment.robot):
+        _check_robot(experiment, number, robot, file)
+
+
+def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number)
+    for name, value in (("id", robot.id), ("condition", robot.group)):
+        if not is_id(value):
+            raise file.error((*where, name), f"{name!r} is {value!r}; {_ID_RULE}")
+    if robot.paths and robot not in experiment.learners:
+        raise file.error((*where, "paths"), f"{robot.id!r} is no learner: it cannot be given paths")
+    if len(robot.paths) > experiment.learning.capacity:
+        raise file.error((*where, "paths"), f"{len(robot.paths)} paths do not fit in [learning] capacity")
+    try:
+        robot.given_paths()
+    except ValueError as error:
+        raise file.error((*where, "paths"), str(error)) from error
+    _check_watching(experiment, number, robot, file)
+    _check_place(experiment, number, robot, file)
+
+
+def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number, "watches")
+    known = [other.id for other in experiment.robot if other.id != robot.id]
+    if robot.watches and robot not in experiment.learners:
+        raise file.error(where, f"{robot.id!r} is no learner: it cannot watch")
+    if robot.watches and robot.watches not in known:
+        whom = nearest(robot.watches, known) if known else "there is no other robot"
+        raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {whom}")
+    if robot.watches:
+        _check_observers_place(experiment, robot, file)
+
+
+def _check_observers_place(experiment: Experiment, robot: RobotSettings, file: ConfigFile) -> None:
+    demonstrator, arena = experiment.robot_named(robot.watches), experiment.arena
+    place = experiment.observers_place(demonstrator)
+    if not (0 <= place.x_m <= arena.width_m and 0 <= place.y_m <= arena.height_m):
+        where = ("robot", experiment.robot.index(demonstrator), "south_west_m")
+        raise file.error(
+            where,
+            f"{robot.id!r} would watch {robot.watches!r} from ({place.x_m:.2f}, {place.y_m:.2f}) m, which is "
+            f"off the floor: leave {BEYOND_CORNER_M:g} m east and south of that compartment",
+        )
+
+
+def _check_place(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number, "south_west_m")
+    place, arena = experiment.compartment(robot), experiment.arena
+    slack_m = 1e-9
+    if (
+        min(place.west_m, place.south_m) < -slack_m
+        or place.east_m > arena.width_m + slack_m
+        or place.north_m > arena.height_m + slack_m
+    ):
+        size = f"{arena.width_m:g} x {arena.height_m:g} m"
+        raise file.error(where, f"the compartment of {robot.id!r} reaches out of the arena of {size}")
+    for other in experiment.robot[:number]:
+        if other.id == robot.id:
+            raise file.error(("robot", number, "id"), f"two robots are called {robot.id!r}")
+        if place.overlaps(experiment.compartment(other)):
+            raise file.error(where, f"the compartments of {other.id!r} and {robot.id!r} overlap")
