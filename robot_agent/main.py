@@ -12,6 +12,7 @@ from robot_agent.assembly import Assembly
 from robot_agent.checkpoint import Checkpoint
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, guarded, nearest
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
     add_common_arguments,
@@ -45,7 +46,8 @@ def run(arguments: argparse.Namespace) -> None:
     experiment = load_experiment(arguments)
     names = _names(arguments.robot, experiment)
     leave_on_signals()
-    with joined(arguments, "robot", names, experiment.simulation.tick_s) as node:
+    identity = RunIdentity.of(experiment, arguments.trial)
+    with joined(arguments, "robot", names, experiment.simulation.tick_s, identity) as node:
         assembly = Assembly(experiment, node, arguments.trial)
         agents = [assembly.agent(name) for name in names]
         if arguments.state:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import secrets
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from functools import partial
@@ -19,6 +20,9 @@ from swarm.cli.output import print_json
 from swarm.config.experiment import Experiment
 from swarm.runtime.process import OneLineParser, leave_on_signals
 from swarm.runtime.zenoh_session import Session, SessionSettings
+
+RUN_ID_BYTES = 6
+"""12 digits: a laboratory's thousand runs share one with a probability of 2 in a billion."""
 
 
 def run() -> None:
@@ -40,7 +44,10 @@ def conduct(arguments: argparse.Namespace) -> None:
             trials = [arguments.trial]
             environment = partial(laboratory, experiment, session, progress.warn)
         directory = RunDirectory.create(arguments.out, experiment.run.name)
-        summary = Run(experiment, arguments.experiment, directory, environment, trials, progress).run()
+        joinable = arguments.listen or arguments.speed
+        run_id = secrets.token_hex(RUN_ID_BYTES) if joinable else ""
+        run = Run(experiment, arguments.experiment, directory, environment, trials, progress, run_id)
+        summary = run.run()
     if arguments.json:
         print_json(summary)
     else:

@@ -21,6 +21,7 @@ from server.recording.recorder import Recorder, digest
 from server.run_directory import RunDirectory
 from server.trial import Trial, TrialResult
 from swarm.config.experiment import Experiment
+from swarm.runtime.identity import RunIdentity
 
 
 @dataclass
@@ -34,6 +35,8 @@ class Run:
     trials: Sequence[int]
     """Their numbers, in order."""
     progress: RunProgress
+    run_id: str = ""
+    """Random, and new with every run; empty in a lockstep, which nobody can join and anybody can repeat."""
     results: list[TrialResult] = field(default_factory=list)
     versions: dict[str, str] = field(default_factory=versions)
 
@@ -55,12 +58,13 @@ class Run:
         return summary
 
     def _trial(self, trial: int, file: Path) -> TrialResult:
-        plan = TrialPlan(trial, file, self.directory.output(trial))
+        identity = RunIdentity.of(self.experiment, trial, self.run_id)
+        plan = TrialPlan(identity, file, self.directory.output(trial))
         with self.environment(plan) as environment:
             reporter = environment.reporter
-            conductor = Conductor(self.experiment, trial, reporter, environment.carrier)
+            conductor = Conductor(self.experiment, identity, reporter, environment.carrier)
             recorder = Recorder(
-                self.directory.log(trial), metadata(self.experiment, file, trial, self.versions)
+                self.directory.log(trial), metadata(self.experiment, file, identity, self.versions)
             )
             health, views = Health(reporter), Views(self.experiment)
             return Trial(environment, conductor, recorder, health, views, self.progress.show).run()
@@ -71,6 +75,7 @@ class Run:
         sim_s = sum(result.sim_s for result in self.results)
         return {
             "run": str(self.directory.path),
+            "run_id": self.run_id,
             "log": [str(log) for log in logs],
             "digest": digest(logs),
             "moves": sum(result.moves for result in self.results),
@@ -104,4 +109,5 @@ class Run:
             for number, trial in enumerate(self.trials)
             for robot in self.experiment.robot
         ]
-        self.directory.write_json("manifest.json", {"name": run.name, "moves": run.moves, "trials": records})
+        about = {"name": run.name, "run_id": self.run_id, "moves": run.moves}
+        self.directory.write_json("manifest.json", {**about, "trials": records})

@@ -6,6 +6,7 @@ import argparse
 import sys
 
 from swarm.errors import guarded
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
     add_common_arguments,
@@ -28,7 +29,8 @@ def run(arguments: argparse.Namespace) -> None:
     experiment = load_experiment(arguments)
     make_backend = backend_named(experiment.tracker.backend)
     leave_on_signals()
-    with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s) as node:
+    identity = RunIdentity.of(experiment, arguments.trial)
+    with joined(arguments, "tracker", ["bridge"], experiment.simulation.tick_s, identity) as node:
         backend = make_backend(experiment, node, arguments.trial)
         arena = experiment.arena
         plausibility = Plausibility(PlausibilitySettings(arena.width_m, arena.height_m))

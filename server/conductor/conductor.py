@@ -14,6 +14,7 @@ from swarm.errors import RunFailedError
 from swarm.geometry import Grid
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.subscription import Received, Subscription, Subscriptions
 
 RUN_STATE_PERIOD_NS = NS_PER_S
@@ -25,17 +26,21 @@ STUCK_AFTER_NS = 600 * NS_PER_S
 class Conductor:
     """Follows a trial from what is on the wire, and speaks to the robots by the same wire."""
 
-    def __init__(self, experiment: Experiment, trial: int, reporter: Reporter, carrier: Carrier) -> None:
+    def __init__(
+        self, experiment: Experiment, identity: RunIdentity, reporter: Reporter, carrier: Carrier
+    ) -> None:
         self._experiment = experiment
-        self._trial = trial
+        self._identity = identity
         self._reporter = reporter
         self._moves = Subscription(topics.MOVE)
+        self._statuses = Subscription(topics.STATUS)
         self._best_paths = Subscription(topics.BEST_PATH)
         self._paths = Subscription(topics.PATH)
         self._visit_words = Subscription(topics.VISIT)
         self._observations = Subscription(topics.OBSERVATION)
         self._truths = Subscription(topics.TRUTH)
-        heard = (self._moves, self._best_paths, self._paths, self._visit_words, self._observations)
+        learning = (self._moves, self._statuses, self._best_paths, self._paths)
+        heard = (*learning, self._visit_words, self._observations)
         self._subscriptions = Subscriptions(heard)
         self._feeds_while_watching = Subscriptions((*heard, self._truths))
         self._goal = Grid(experiment.arena.columns, experiment.arena.rows).goal
@@ -67,6 +72,8 @@ class Conductor:
         (self._feeds_while_watching if watching else self._subscriptions).put(batch.items)
         for move in self._moves.take():
             self._note_move(move, batch.t_ns)
+        for status in self._statuses.take():
+            self._note_status(status)
         for best in self._best_paths.take():
             self.best_path[best.robot] = best.message.length
         self._conduct_visits(batch.t_ns)
@@ -82,6 +89,11 @@ class Conductor:
         self._copy_errors.moved(robot, move, received.header.t_ns)
         if move.next_state == self._goal:
             self._visits.track_ended(robot, move.track)
+
+    def _note_status(self, received: Received[pb.Status]) -> None:
+        """A learner whose last moves nobody heard, having made them without a server, says so here."""
+        if received.robot in self.best_path:
+            self.moves[received.robot] = max(self.moves[received.robot], received.message.moves)
 
     def _conduct_visits(self, t_ns: int) -> None:
         for path in self._paths.take():
@@ -108,5 +120,8 @@ class Conductor:
 
     def announce(self, phase: pb.RunState.Phase.ValueType) -> None:
         """Tell everyone the phase of the trial."""
-        state = pb.RunState(phase=phase, trial=self._trial, experiment=self._experiment.run.name)
+        identity = self._identity
+        state = pb.RunState(phase=phase, trial=identity.trial, experiment=self._experiment.run.name)
+        if identity.run_id:
+            state.run_id, state.identity = identity.run_id, str(identity.fingerprint)
         self._reporter.publish(topics.RUN_STATE, state)

@@ -21,6 +21,7 @@ from server.reporter import Reporter
 from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import Experiment
 from swarm.parallel import available_cores
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import patient
 from swarm.runtime.zenoh_session import Session, SessionSettings
@@ -33,11 +34,15 @@ LIVE_FLUSH_S = 0.5
 
 @dataclass(frozen=True)
 class TrialPlan:
-    """Which trial is to be played: its number, the experiment's file, where its processes print to."""
+    """Which trial is to be played: its identity, the experiment's file, where its processes print to."""
 
-    trial: int
+    identity: RunIdentity
     file: Path
     output: Path
+
+    @property
+    def trial(self) -> int:
+        return self.identity.trial
 
 
 @dataclass(frozen=True)
@@ -72,9 +77,9 @@ def simulated(
         Session(_hub_settings(endpoint, pace)) as session,
     ):
         specs = run_table(experiment, plan.file, endpoint, plan.trial, pace, plan.output)
-        claim(session, _presence())
+        claim(session, _presence(plan.identity))
         with Supervisor(specs, plan.output, spread(len(specs), cores)) as supervisor:
-            hub, flush_every = _hub(experiment, session, pace, specs, supervisor.check, warn)
+            hub, flush_every = _hub(experiment, plan.identity, session, pace, specs, supervisor.check, warn)
             reporter = Reporter(hub)
             yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every)
 
@@ -86,6 +91,7 @@ def _hub_settings(endpoint: str, pace: Pace) -> SessionSettings:
 
 def _hub(
     experiment: Experiment,
+    identity: RunIdentity,
     session: Session,
     pace: Pace,
     specs: list[ProcessSpec],
@@ -95,7 +101,7 @@ def _hub(
     """The hub of a pace, and how many of its batches come between two flushes."""
     if not pace.lockstep:
         clock = scaled_clock(pace.started_ns, pace.speed)
-        return LiveHub(session, clock, experiment, check, warn), _live_flush(experiment, pace.speed)
+        return LiveHub(session, clock, experiment, identity, check, warn), _live_flush(experiment, pace.speed)
     names, ticks = [spec.name for spec in specs], experiment.ticks_per_exchange
     tick_s = experiment.simulation.tick_s
     hub = LockstepHub(session, names, tick_s, check, warn, ticks_per_exchange=ticks)
@@ -114,18 +120,18 @@ def laboratory(
     experiment: Experiment,
     session: Session,
     warn: Warn,
-    plan: TrialPlan,  # noqa: ARG001
+    plan: TrialPlan,
 ) -> Iterator[TrialEnvironment]:
     """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
-    claim(session, _presence())
-    hub = LiveHub(session, unix_clock(), experiment, _nothing_to_check, warn)
+    claim(session, _presence(plan.identity))
+    hub = LiveHub(session, unix_clock(), experiment, plan.identity, _nothing_to_check, warn)
     reporter = Reporter(hub)
     carrier = Operator(reporter, warn)
     yield TrialEnvironment(hub, reporter, carrier, _live_flush(experiment, 1.0), waits_for_people=True)
 
 
-def _presence() -> Presence:
-    return Presence("server", "server", socket.gethostname(), time.time_ns())
+def _presence(identity: RunIdentity) -> Presence:
+    return Presence("server", "server", socket.gethostname(), time.time_ns(), str(identity.fingerprint))
 
 
 def _live_flush(experiment: Experiment, speed: float) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from swarm.messages.topics import ALIVE, LOCKSTEP_DONE, LOCKSTEP_TICK, TABLE, Delivery, Topic
+from swarm.messages.topics import ALIVE, LOCKSTEP_DONE, LOCKSTEP_TICK, RUN_IDENTITY, TABLE, Delivery, Topic
 
 _HEAD = """# Everything on the wire
 
@@ -51,7 +51,8 @@ def _mark(yes: bool) -> str:
 def _beside_the_table() -> str:
     return (
         f"Beside the table: `{ALIVE}` are presence tokens (kind is robot, tracker or server), and lockstep\n"
-        f"simulation uses `{LOCKSTEP_TICK}` and `{LOCKSTEP_DONE}`. None of these is logged.\n"
+        f"simulation uses `{LOCKSTEP_TICK}` and `{LOCKSTEP_DONE}`. The server answers a query for\n"
+        f"`{RUN_IDENTITY}` with the run's id and all settings. None of these is logged.\n"
     )
 
 

@@ -102,8 +102,10 @@ TABLE: tuple[Topic[Any], ...] = (
 
 LOCKSTEP_TICK = "lockstep/tick/{process}"
 LOCKSTEP_DONE = "lockstep/done"
-ALIVE = "alive/{kind}/{name}/{host}/{epoch}"
-"""Presence (liveliness tokens): kind is robot, tracker, server or process."""
+ALIVE = "alive/{kind}/{name}/{host}/{epoch}/{identity}"
+"""Presence (liveliness tokens): kind is robot, tracker, server or process; identity is a fingerprint."""
+RUN_IDENTITY = "run/identity"
+"""Asked, not published: the server answers with the run's id and every setting."""
 
 
 def is_id(name: str) -> bool:

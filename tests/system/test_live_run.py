@@ -22,6 +22,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import Delivery, Topic, topic_of
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
@@ -56,7 +57,9 @@ class LiveSwarm:
         claim(self.session, Presence("server", "server", "here", 1))
         clock = scaled_clock(self._started_ns, SPEED)
         self.processes: list[subprocess.Popen[bytes]] = []
-        self.hub = LiveHub(self.session, clock, Experiment.load(self.file), self.check, print)
+        experiment = Experiment.load(self.file)
+        self.identity = RunIdentity.of(experiment, 0, "0123456789ab")
+        self.hub = LiveHub(self.session, clock, experiment, self.identity, self.check, print)
         self._batches = 0
 
     def start(self, module: str, *arguments: str) -> subprocess.Popen[bytes]:
@@ -89,7 +92,8 @@ class LiveSwarm:
         """What comes, for ever, while the run's state is announced."""
         while True:
             if self._batches % STATE_EVERY_BATCHES == 0:
-                self.hub.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.RUNNING))
+                state = pb.RunState(phase=pb.RunState.RUNNING, run_id=self.identity.run_id)
+                self.hub.publish(topics.RUN_STATE, state)
             self._batches += 1
             yield from self.hub.gather().items
 

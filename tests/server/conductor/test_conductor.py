@@ -19,6 +19,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import Topic
+from swarm.runtime.identity import RunIdentity
 from tests.support.swarm_runs import experiment_text, write_experiment
 
 TICK_NS = NS_PER_S // 10
@@ -31,7 +32,9 @@ class Rig:
         self.said: list[tuple[str, Any]] = []
         experiment = Experiment.load(write_experiment(directory, experiment_text(moves=10)))
         reporter = Reporter(self)
-        self.conductor = Conductor(experiment, 3, reporter, SimulatedCarrier(reporter))
+        self.conductor = Conductor(
+            experiment, RunIdentity.of(experiment, 3), reporter, SimulatedCarrier(reporter)
+        )
         self.t_ns = 0
         self._sequence = 0
 
