@@ -9,7 +9,7 @@ from pathlib import Path
 
 from robot_agent.agent import Agent
 from robot_agent.assembly import Assembly
-from robot_agent.checkpoint import Checkpoint
+from robot_agent.checkpoint import Checkpoint, OtherRun
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, guarded, nearest
 from swarm.runtime.identity import RunIdentity
@@ -51,15 +51,20 @@ def run(arguments: argparse.Namespace) -> None:
         assembly = Assembly(experiment, node, arguments.trial)
         agents = [assembly.agent(name) for name in names]
         if arguments.state:
-            run = f"{experiment.run.name}, seed {experiment.run.seed}, trial {arguments.trial}"
             for agent, name in zip(agents, names, strict=True):
-                agent.resume_from(Checkpoint(arguments.state, name, run))
+                _go_on(agent, name, arguments, node.run_id, str(identity.fingerprint))
         try:
             node.run(partial(_step, agents))
         finally:
             _stop(agents)
             if arguments.keys:
                 _write_keys(arguments.keys, node.keys_received)
+
+
+def _go_on(agent: Agent, name: str, arguments: argparse.Namespace, run_id: str, identity: str) -> None:
+    text = agent.resume_from(Checkpoint(arguments.state, name, run_id, identity, arguments.other_run))
+    if text:
+        print(f"{name}: {text}", file=sys.stderr, flush=True)
 
 
 def _step(agents: list[Agent], t_ns: int) -> None:
@@ -102,8 +107,17 @@ def _parser() -> OneLineParser:
         "--state",
         type=Path,
         metavar="DIR",
-        help="keep what was learnt here; go on from it after a restart",
+        help="keep what was learnt here; after a restart in the same run the robot goes on from it",
     )
+    parser.set_defaults(other_run=OtherRun.REFUSED)
+    of_another_run = parser.add_mutually_exclusive_group()
+    for option, choice, meaning in (
+        ("--fresh", OtherRun.FRESH, "begin anew if --state is of another run; its file gets another name"),
+        ("--resume", OtherRun.RESUMED, "go on from what was learnt in another run; the log tells of it"),
+    ):
+        of_another_run.add_argument(
+            option, action="store_const", dest="other_run", const=choice, help=meaning
+        )
     parser.add_argument(
         "--keys",
         type=Path,

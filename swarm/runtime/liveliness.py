@@ -66,8 +66,8 @@ def _refuse_if_taken(presence: Presence, others: list[Presence]) -> None:
     for other in others:
         raise UserError(
             f"{presence.kind} {presence.name!r} is already alive on host {other.host!r}; this one on host "
-            f"{presence.host!r} does not start{_same_host(presence, other)}: stop the other, or give this one "
-            "an id of its own"
+            f"{presence.host!r} does not start{_same_host(presence, other)}: stop the other, "
+            "or give this one an id of its own"
         )
 
 

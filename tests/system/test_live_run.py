@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import signal
 import subprocess
 import sys
@@ -122,22 +121,19 @@ def test_a_killed_agent_goes_on_from_its_checkpoint(swarm: LiveSwarm) -> None:
     agent.kill()
     agent.wait()
     path = swarm.directory / "state" / "r0.json"
-    saved = Checkpoint(path.parent, "r0", _run_in(path)).load()
+    identity = swarm.identity
+    saved = Checkpoint(path.parent, "r0", identity.run_id, str(identity.fingerprint)).load()
     assert saved is not None
-    moves_saved = saved["policy"]["moves"]
+    moves_saved = saved.policy["moves"]
     assert moves_saved >= 4
     swarm.start_agent()
     item, move = next(
         found for found in swarm.received(topics.MOVE) if found[0].header.epoch not in first_epochs
     )
     assert move.number == moves_saved + 1, "it counts on"
-    before = saved["policy"]["controller"]["q"][move.state][move.action]
+    before = saved.policy["controller"]["q"][move.state][move.action]
     assert move.q_value - move.q_change == pytest.approx(before, abs=1e-12), "it learns on"
     assert item.header.sequence == 1, "a restart shows in the log as a new epoch that counts from 1"
-
-
-def _run_in(path: Path) -> str:
-    return str(json.loads(path.read_text())["run"])
 
 
 def test_corrupt_messages_are_counted_and_nothing_dies(swarm: LiveSwarm) -> None:
