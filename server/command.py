@@ -7,17 +7,20 @@ import math
 import secrets
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from rich.console import Console
 
+from server.interrupted_run import InterruptedRun
 from server.processes.environment import Environment, laboratory, simulated
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
 from swarm.cli.output import print_json
 from swarm.config.experiment import Experiment
+from swarm.errors import UserError
 from swarm.runtime.process import OneLineParser, leave_on_signals
 from swarm.runtime.zenoh_session import Session, SessionSettings
 
@@ -33,25 +36,54 @@ def run() -> None:
 def conduct(arguments: argparse.Namespace) -> None:
     """Conduct the experiment's trials on simulated robots or, with --listen, on a laboratory's."""
     leave_on_signals()
-    experiment = Experiment.load(arguments.experiment)
-    experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
-    with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
-        trials: Sequence[int] = range(experiment.run.trials)
-        environment: Environment = partial(simulated, experiment, arguments.speed, progress.warn)
+    plan = _resumed(arguments) if arguments.resume else _begun(arguments)
+    with RunProgress(plan.experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
+        trials: Sequence[int] = range(plan.experiment.run.trials)
+        environment: Environment = partial(simulated, plan.experiment, arguments.speed, progress.warn)
         if arguments.listen:
             settings = SessionSettings(arguments.listen, hub=True, config=arguments.zenoh_config)
             session = open_session.enter_context(Session(settings))
-            trials = [arguments.trial]
-            environment = partial(laboratory, experiment, session, progress.warn)
-        directory = RunDirectory.create(arguments.out, experiment.run.name)
-        joinable = arguments.listen or arguments.speed
-        run_id = secrets.token_hex(RUN_ID_BYTES) if joinable else ""
-        run = Run(experiment, arguments.experiment, directory, environment, trials, progress, run_id)
+            trials = [plan.trial]
+            environment = partial(laboratory, plan.experiment, session, progress.warn)
+        directory = plan.directory or RunDirectory.create(arguments.out, plan.experiment.run.name)
+        run = Run(plan.experiment, plan.file, directory, environment, trials, progress, plan.run_id)
         summary = run.run()
     if arguments.json:
         print_json(summary)
     else:
         print_summary(summary)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is to be run, and for a run that goes on, where."""
+
+    experiment: Experiment
+    file: Path
+    trial: int
+    run_id: str
+    directory: RunDirectory | None = None
+
+
+def _begun(arguments: argparse.Namespace) -> Plan:
+    if arguments.experiment is None:
+        raise UserError("EXPERIMENT.toml is missing: say what is run, or with --resume which run goes on")
+    experiment = Experiment.load(arguments.experiment)
+    experiment = experiment.changed(arguments.seed, arguments.moves, arguments.processes)
+    joinable = arguments.listen or arguments.speed
+    run_id = secrets.token_hex(RUN_ID_BYTES) if joinable else ""
+    return Plan(experiment, arguments.experiment, arguments.trial or 0, run_id)
+
+
+def _resumed(arguments: argparse.Namespace) -> Plan:
+    own = ("experiment", "out", "seed", "moves", "trial")
+    given = [name for name in own if getattr(arguments, name) is not None]
+    if given:
+        raise UserError(f"--resume goes on with a run as it was begun: leave out {', '.join(given)}")
+    if not arguments.listen:
+        raise UserError("--resume waits for the robots of a laboratory: say where with --listen")
+    run = InterruptedRun.read(arguments.resume)
+    return Plan(run.experiment, run.file, run.trial, run.run_id, run.directory)
 
 
 def _parser() -> OneLineParser:
@@ -60,7 +92,7 @@ def _parser() -> OneLineParser:
         description="Runs an experiment and records everything: on simulated robots, whose processes it "
         "starts, or with --listen on the robots of a laboratory.",
     )
-    parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="what is run")
+    parser.add_argument("experiment", type=Path, nargs="?", metavar="EXPERIMENT.toml", help="what is run")
     parser.add_argument("--out", type=Path, metavar="DIR", help="a new directory (runs/NAME-001 and so on)")
     parser.add_argument("--seed", type=_at_least(0), metavar="N", help="in place of the experiment's")
     parser.add_argument("--moves", type=_at_least(1), metavar="N", help="in place of the experiment's")
@@ -84,9 +116,14 @@ def _parser() -> OneLineParser:
     real.add_argument(
         "--trial",
         type=_at_least(0),
-        default=0,
         metavar="N",
         help="a laboratory runs one trial at a time, from 0; the agents are started with the same number",
+    )
+    real.add_argument(
+        "--resume",
+        type=Path,
+        metavar="RUN_DIRECTORY",
+        help="go on with a run whose server ended before its trial did; the agents need no restart",
     )
     real.add_argument(
         "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"

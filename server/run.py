@@ -12,13 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from server.conductor.conductor import Conductor
+from server.conductor.earlier import earlier_progress
 from server.processes.environment import Environment, TrialPlan
 from server.progress import RunProgress
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
 from server.recording.provenance import metadata, versions
 from server.recording.recorder import Recorder, digest
-from server.run_directory import RunDirectory
+from server.run_directory import MANIFEST, RunDirectory
 from server.trial import Trial, TrialResult
 from swarm.config.experiment import Experiment
 from swarm.runtime.identity import RunIdentity
@@ -42,6 +43,10 @@ class Run:
 
     def run(self) -> dict[str, Any]:
         """All trials; the run's directory is complete after each of them."""
+        with self.directory.held():
+            return self._held()
+
+    def _held(self) -> dict[str, Any]:
         began = time.monotonic()
         copy = self.directory.keep_experiment(self.file)
         self._write_manifest("running")
@@ -62,15 +67,16 @@ class Run:
         plan = TrialPlan(identity, file, self.directory.output(trial))
         with self.environment(plan) as environment:
             reporter = environment.reporter
-            conductor = Conductor(self.experiment, identity, reporter, environment.carrier)
-            recorder = Recorder(
-                self.directory.log(trial), metadata(self.experiment, file, identity, self.versions)
-            )
+            *before, log = self.directory.logs(trial)
+            earlier = earlier_progress(before)
+            conductor = Conductor(self.experiment, identity, reporter, environment.carrier, earlier)
+            about = metadata(self.experiment, file, identity, self.versions, self.directory.part)
+            recorder = Recorder(log, about)
             health, views = Health(reporter), Views(self.experiment)
             return Trial(environment, conductor, recorder, health, views, self.progress.show).run()
 
     def _summary(self, wall_s: float) -> dict[str, Any]:
-        logs = [self.directory.log(trial) for trial in self.trials]
+        logs = [log for trial in self.trials for log in self.directory.logs(trial)]
         logs = [log for log in logs if log.exists()]
         sim_s = sum(result.sim_s for result in self.results)
         return {
@@ -103,11 +109,11 @@ class Run:
                 "role": robot.role.value,
                 "trial": trial,
                 "seed": run.seed,
-                "log": self.directory.log(trial).name,
+                "log": self.directory.logs(trial)[0].name,
                 "state": "complete" if number < len(self.results) else state,
             }
             for number, trial in enumerate(self.trials)
             for robot in self.experiment.robot
         ]
         about = {"name": run.name, "run_id": self.run_id, "moves": run.moves}
-        self.directory.write_json("manifest.json", {**about, "trials": records})
+        self.directory.write_json(MANIFEST, {**about, "trials": records})

@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
+import os
 import re
 import shutil
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from swarm.errors import UserError
+
+EXPERIMENT, MANIFEST = "experiment.toml", "manifest.json"
 
 
 @dataclass(frozen=True)
 class RunDirectory:
     """A run's directory: `experiment.toml`, `manifest.json` (conditions x trials x seeds), `run.json`
     (what differs between two runs of one seed), `trial-000.mcap` and so on, `output/` of the processes.
+
+    Every server that went on with a trial left a log of its own: `trial-000-2.mcap` and so on.
     """
 
     path: Path
+    part: int = 1
+    """Which of its trial's logs this server writes, counted from 1."""
 
     @classmethod
     def create(cls, path: Path | None, name: str) -> RunDirectory:
@@ -36,12 +45,39 @@ class RunDirectory:
             raise UserError(f"{chosen}: cannot be made ({error.strerror}); choose another --out") from error
         return cls(chosen)
 
+    @classmethod
+    def reopened(cls, path: Path, trial: int) -> RunDirectory:
+        """The directory of a run that another server began, for the next log of its trial."""
+        directory = cls(path)
+        while directory.log(trial).exists():
+            directory = replace(directory, part=directory.part + 1)
+        return directory
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """UserError if another server records into this directory; it cannot while the block runs."""
+        descriptor = os.open(self.path, os.O_RDONLY | os.O_CLOEXEC)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            yield
+        except BlockingIOError as error:
+            raise UserError(f"{self.path}: a server is recording there now; stop it first") from error
+        finally:
+            os.close(descriptor)
+
     def keep_experiment(self, file: Path) -> Path:
-        """A copy of the experiment file, byte for byte."""
-        return Path(shutil.copyfile(file, self.path / "experiment.toml"))
+        """A copy of the experiment file, byte for byte; in a run that goes on it is there."""
+        copy = self.path / EXPERIMENT
+        return copy if self.part > 1 else Path(shutil.copyfile(file, copy))
 
     def log(self, trial: int) -> Path:
-        return self.path / f"trial-{trial:03}.mcap"
+        """The log that this server writes."""
+        return self.logs(trial)[-1]
+
+    def logs(self, trial: int) -> list[Path]:
+        """All logs of a trial up to this server's, in order."""
+        later = [f"trial-{trial:03}-{part}.mcap" for part in range(2, self.part + 1)]
+        return [self.path / name for name in (f"trial-{trial:03}.mcap", *later)]
 
     def output(self, trial: int) -> Path:
         """Where the processes of a trial print to."""

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from server.conductor.camera_views import CameraViews
 from server.conductor.carrier import Carrier
 from server.conductor.copy_errors import CopyErrors
+from server.conductor.earlier import EarlierProgress
 from server.conductor.visits import Visits
 from server.hubs.hub import Batch
 from server.reporter import Reporter
@@ -27,7 +30,12 @@ class Conductor:
     """Follows a trial from what is on the wire, and speaks to the robots by the same wire."""
 
     def __init__(
-        self, experiment: Experiment, identity: RunIdentity, reporter: Reporter, carrier: Carrier
+        self,
+        experiment: Experiment,
+        identity: RunIdentity,
+        reporter: Reporter,
+        carrier: Carrier,
+        earlier: Mapping[str, EarlierProgress] | None = None,
     ) -> None:
         self._experiment = experiment
         self._identity = identity
@@ -55,6 +63,7 @@ class Conductor:
         """Moves made so far, by robot."""
         self.best_path = {robot.id: 0 for robot in experiment.learners}
         """The newest best path length, by learner; 0 before the first."""
+        self._take_up(earlier or {})
 
     @property
     def ended(self) -> bool:
@@ -81,6 +90,14 @@ class Conductor:
         if batch.t_ns >= self._state_due_ns or self._ending:
             self._state_due_ns = batch.t_ns + RUN_STATE_PERIOD_NS
             self.announce(pb.RunState.ENDED if self._ending else pb.RunState.RUNNING)
+
+    def _take_up(self, earlier: Mapping[str, EarlierProgress]) -> None:
+        """Go on from where the trial was when its last server ended."""
+        for robot in self.moves.keys() & earlier.keys():
+            self.moves[robot] = earlier[robot].moves
+            if robot in self.best_path:
+                self.best_path[robot] = earlier[robot].best_path
+            self._visits.take_up(robot, earlier[robot])
 
     def _note_move(self, received: Received[pb.Move], t_ns: int) -> None:
         robot, move = received.robot, received.message
