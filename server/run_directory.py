@@ -47,10 +47,16 @@ class RunDirectory:
 
     @classmethod
     def reopened(cls, path: Path, trial: int) -> RunDirectory:
-        """The directory of a run that another server began, for the next log of its trial."""
+        """The directory of a run that another server began, for the next log of its trial.
+
+        A server that was killed in its first moment left an empty file, which makes room.
+        """
         directory = cls(path)
         while directory.log(trial).exists():
-            directory = replace(directory, part=directory.part + 1)
+            if directory.log(trial).stat().st_size == 0:
+                directory.log(trial).unlink()
+            else:
+                directory = replace(directory, part=directory.part + 1)
         return directory
 
     @contextmanager

@@ -128,5 +128,5 @@ def _damage_notes(log: LogContent) -> list[str]:
 
 def _silent_notes(log: LogIdentity, reported: set[tuple[str, str]]) -> list[str]:
     """Learners that made too few moves for a single point of their curve."""
-    silent = sorted(robot for robot in log.learners if (str(log.path), robot) not in reported)
+    silent = sorted(robot for robot in log.learners if (log.trial_log, robot) not in reported)
     return [f"{log.path}: {robot} reported no best path and is left out" for robot in silent]

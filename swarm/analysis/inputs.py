@@ -9,8 +9,8 @@ from pathlib import Path
 
 from swarm.errors import UserError
 from swarm.logs.identity import LogIdentity, identify
+from swarm.logs.trial_logs import joined, logs_in
 
-LOG_PATTERN = "trial-*.mcap"
 MANIFEST = "manifest.json"
 
 
@@ -30,7 +30,7 @@ class Inputs:
 def find_inputs(runs: Sequence[Path]) -> Inputs:
     """The logs of run directories and log files; UserError if they cannot be analyzed together."""
     notes: list[str] = []
-    logs = [identity for run in runs for identity in _logs_of(run, notes)]
+    logs = joined(identity for run in runs for identity in _logs_of(run, notes))
     _refuse_repetitions(logs)
     commits = sorted({log.commit for log in logs})
     if len(commits) > 1:
@@ -51,12 +51,9 @@ def default_out(runs: Sequence[Path]) -> Path:
 def _logs_of(run: Path, notes: list[str]) -> list[LogIdentity]:
     if not run.is_dir():
         return [identify(run)]
-    paths = sorted(run.glob(LOG_PATTERN))
-    if not paths:
-        raise UserError(f"{run}: holds no log ({LOG_PATTERN}); is it a run directory?")
-    logs = [identify(path) for path in paths]
+    logs = logs_in(run)
     _refuse_mixture(run, logs)
-    notes.extend(_missing(run, {path.name for path in paths}))
+    notes.extend(_missing(run, {log.path.name for log in logs}))
     return logs
 
 
@@ -100,7 +97,7 @@ def _refuse_repetitions(logs: list[LogIdentity]) -> None:
     for log in logs:
         for condition in sorted({log.conditions[robot] for robot in log.learners}):
             before = seen.setdefault((condition, *log.replicate), log)
-            if before is not log:
+            if before.trial_log != log.trial_log or (before is not log and before.path == log.path):
                 same = "is given twice" if before.digest == log.digest else "is in both"
                 raise UserError(
                     f"{before.path} and {log.path}: trial {log.trial} of seed {log.seed} of {condition!r} "

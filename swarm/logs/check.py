@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import polars as pl
 
 from swarm.logs.completeness import HealthTable, health_totals
-from swarm.logs.identity import identify
+from swarm.logs.identity import LogIdentity, identify
 from swarm.logs.reader import LogReader
 from swarm.logs.tables import is_tabled, rows
+from swarm.logs.trial_logs import by_trial, logs_in
 
 
 @dataclass(frozen=True)
@@ -43,16 +44,44 @@ class LogCheck:
 
 def check_log(path: Path) -> LogCheck:
     """Read every byte and decode every message; LogError for what is no log of a run."""
-    identity = identify(path)
-    reader, health = LogReader(path, is_tabled), HealthTable(identity)
-    for part in reader.parts():
-        health.add(part, len(rows(part, identity).rejected) if part.payloads else 0)
+    return _checked([identify(path)])
+
+
+def check_run(run: Path) -> list[LogCheck]:
+    """The trials of a run directory, each with all of its logs: what is missing between them is missing."""
+    return [_checked(parts) for parts in by_trial(logs_in(run))]
+
+
+def _checked(parts: list[LogIdentity]) -> LogCheck:
+    health = HealthTable(parts[0])
+    readers = [_read(part, health) for part in parts]
     found = health.frame()
-    indexed = reader.recorded_messages is not None
+    faults = [fault for reader in readers for fault in _damage(reader, named=len(parts) > 1)]
+    return LogCheck(
+        parts[0].path,
+        sum(reader.messages for reader in readers),
+        all(reader.recorded_messages is not None for reader in readers),
+        faults + _faults(found),
+        _remarks(found),
+    )
+
+
+def _read(identity: LogIdentity, health: HealthTable) -> LogReader:
+    """A sender has a channel in each of a trial's logs: here they are one, but those that servers drew."""
+    reader = LogReader(identity.path, is_tabled)
+    for part in reader.parts():
+        rejected = len(rows(part, identity).rejected) if part.payloads else 0
+        number = 1 if part.channel.epoch else identity.part
+        health.add(replace(part, channel=replace(part.channel, id=number)), rejected)
+    return reader
+
+
+def _damage(reader: LogReader, named: bool) -> list[str]:
+    """Why a log is not sound by its own bytes; `named`: with the file's name."""
     faults = [str(damage) for damage in reader.damage]
-    if not indexed and not faults:
-        faults.append("the log has no index")
-    return LogCheck(path, reader.messages, indexed, faults + _faults(found), _remarks(found))
+    if not faults and reader.recorded_messages is None:
+        faults = ["the log has no index"]
+    return [f"{reader.path.name}: {fault}" for fault in faults] if named else faults
 
 
 def _faults(health: pl.DataFrame) -> list[str]:

@@ -37,6 +37,17 @@ class LogIdentity:
     """The side of a cell of the grids."""
     grid: Grid
     """The cells of each robot's compartment."""
+    run_id: str = ""
+    """Of a run that others could join; empty for a simulation's lockstep."""
+    part: int = 1
+    """Which of the trial's logs this is: every server that went on with the trial wrote one."""
+    first_part: Path | None = None
+    """The log that this one goes on from, once the logs of a trial were put together."""
+
+    @property
+    def trial_log(self) -> str:
+        """What tables call the trial: the path of its first log."""
+        return str(self.first_part or self.path)
 
     def condition(self, robot: str) -> str:
         """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""
@@ -74,6 +85,8 @@ def identify(path: Path) -> LogIdentity:
             learners=frozenset(robot for robot, (role, _) in words.items() if role == Role.LEARNER.value),
             cell_m=arena.cell_m,
             grid=Grid(arena.columns, arena.rows),
+            run_id=run.get("id", ""),
+            part=_count(run.get("part", "1")),
         )
     except (KeyError, ValueError) as error:
         reason = "does not say which run and trial it holds: was it recorded by swarm-server?"
