@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import sys
-import time
-from collections.abc import Callable
 
+from swarm.clock import WallClock
 from swarm.errors import UserError
 from swarm.messages.topics import RUN_IDENTITY
 from swarm.runtime.identity import RunIdentity, shown
@@ -18,15 +17,14 @@ QUESTIONS_IN_SILENCE = 25
 """Five seconds: a server that is there answers the first."""
 
 
-def agreed_run(session: Session, mine: RunIdentity, wait: Callable[[float], None] = time.sleep) -> str:
+def agreed_run(session: Session, mine: RunIdentity, clock: WallClock) -> str:
     """The id of the server's run, once the server answers; UserError if it is not the one `mine` tells of."""
-    questions = 0
-    while not (answers := session.ask(RUN_IDENTITY, ANSWER_WITHIN_S)):
-        questions += 1
-        if questions == QUESTIONS_IN_SILENCE:
+    for question, _ in enumerate(clock.ticks(BETWEEN_QUESTIONS_S)):
+        if answers := session.ask(RUN_IDENTITY, ANSWER_WITHIN_S):
+            return compared(answers[0], mine)
+        if question == QUESTIONS_IN_SILENCE:
             print("waiting for a server that says whose run this is", file=sys.stderr, flush=True)
-        wait(BETWEEN_QUESTIONS_S)
-    return compared(answers[0], mine)
+    raise AssertionError("a clock has no last tick")
 
 
 def compared(answer: bytes, mine: RunIdentity) -> str:

@@ -91,7 +91,7 @@ def joined(
         if arguments.lockstep:
             yield LockstepNode(session, arguments.process)
         else:
-            run_id = agreed_run(session, identity)
+            run_id = agreed_run(session, identity, unix_clock())
             simulated = arguments.started_ns
             clock = scaled_clock(simulated, arguments.speed) if simulated else unix_clock()
             yield LiveNode(session, clock, period_s, epoch, run_id)
