@@ -63,7 +63,8 @@ class Run:
         return summary
 
     def _trial(self, trial: int, file: Path) -> TrialResult:
-        identity = RunIdentity.of(self.experiment, trial, self.run_id)
+        program = self.versions["swarm-runtime"]
+        identity = RunIdentity.of(self.experiment, trial, self.run_id, program)
         plan = TrialPlan(identity, file, self.directory.output(trial))
         with self.environment(plan) as environment:
             reporter = environment.reporter

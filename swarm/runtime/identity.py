@@ -91,11 +91,13 @@ class RunIdentity:
     schema: str
     run_id: str = ""
     """Empty where no run is known yet, and in a lockstep, which nobody can join."""
+    program: str = ""
+    """The server's version, for whoever does not fit it."""
 
     @classmethod
-    def of(cls, experiment: Experiment, trial: int, run_id: str = "") -> RunIdentity:
+    def of(cls, experiment: Experiment, trial: int, run_id: str = "", program: str = "") -> RunIdentity:
         """The identity of a trial as this program would play it."""
-        return cls(canonical(experiment), trial, schema_digest(), run_id)
+        return cls(canonical(experiment), trial, schema_digest(), run_id, program)
 
     @cached_property
     def fingerprint(self) -> Fingerprint:
@@ -105,7 +107,8 @@ class RunIdentity:
 
     def differences(self, other: RunIdentity) -> list[str]:
         """Every key that differs with both values, from this one's side; the messages' version first."""
-        found = [] if self.schema == other.schema else ["the messages are of another version of the program"]
+        version = f"the messages are of another version of the program, there {other.program or 'unknown'}"
+        found = [] if self.schema == other.schema else [version]
         found += _differing(self.settings, other.settings)
         if self.trial != other.trial:
             found.append(f"--trial is {self.trial} here and {other.trial} there")
