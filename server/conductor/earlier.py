@@ -19,10 +19,11 @@ class EarlierProgress:
     """What one robot had done."""
 
     moves: int = 0
+    best_path: int = 0
+    """Its newest length."""
+    copied_paths: int = 0
     tracks: int = 0
     """Journeys that had ended before its last move."""
-    best_path: int = 0
-    copied_paths: int = 0
     visits: int = 0
     """Ordered so far; all but perhaps the last are over."""
     visits_over: int = 0

@@ -176,15 +176,20 @@ def pair(tmp_path: Path) -> Iterator[Laboratory]:
         yield Laboratory(tmp_path, stack, count=2, moves=30)
 
 
-def test_an_agent_that_hears_of_another_run_stops_and_says_why(pair: Laboratory) -> None:
-    server = pair.serve("--out", pair.directory / "first")
-    tracker = pair.track()
-    agents = [pair.agent(robot) for robot in ("r0", "r1")]
-    pair.wait_for_moves("r0", 1)
+def killed_server_of(pair: Laboratory, after: int) -> list[subprocess.Popen[str]]:
+    """The tracker and the agents of a server that was killed after so many moves."""
+    server = pair.serve()
+    others = [pair.track(), *(pair.agent(robot) for robot in ("r0", "r1"))]
+    pair.wait_for_moves("r0", after)
     server.kill()
     server.wait()
+    return others
+
+
+def test_an_agent_that_hears_of_another_run_stops_and_says_why(pair: Laboratory) -> None:
+    tracker, *agents = killed_server_of(pair, after=1)
     pair.serve("--out", pair.directory / "second")
-    runs = [manifest(pair.directory / "first")["run_id"]]
+    runs = [manifest(pair.directory / "run")["run_id"]]
     for process in (tracker, *agents):
         line = line_of(process, 1)
         runs += [manifest(pair.directory / "second")["run_id"]]
@@ -193,12 +198,7 @@ def test_an_agent_that_hears_of_another_run_stops_and_says_why(pair: Laboratory)
 
 def test_a_server_goes_on_with_the_run_of_one_that_was_killed(pair: Laboratory) -> None:
     run = pair.directory / "run"
-    server = pair.serve()
-    pair.track()
-    agents = [pair.agent(robot) for robot in ("r0", "r1")]
-    pair.wait_for_moves("r0", 12)
-    server.kill()
-    server.wait()
+    _, *agents = killed_server_of(pair, after=12)
     finished(pair.serve("--resume", run))
     for agent in agents:
         agent.communicate()

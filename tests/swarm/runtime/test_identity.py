@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -104,10 +105,9 @@ def test_an_answer_that_is_no_identity_is_refused(experiment: Experiment, answer
 
 def test_messages_of_another_version_are_refused(experiment: Experiment) -> None:
     mine = RunIdentity.of(experiment, 0)
-    other = RunIdentity(mine.settings, 0, "another", "0123456789ab")
-    with pytest.raises(
-        UserError, match="run 0123456789ab is not this process's: the messages are of another"
-    ):
+    other = RunIdentity(mine.settings, 0, "another", "0123456789ab", "2.0.0")
+    words = "is not this process's: the messages are of another version of the program, there 2.0.0"
+    with pytest.raises(UserError, match=re.escape(words)):
         compared(other.pack(), mine)
     assert mine.fingerprint.differences(other.fingerprint) == [
         "its messages are of another version of the program"
