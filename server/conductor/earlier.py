@@ -16,16 +16,15 @@ from swarm.messages.validation import BadMessageError, decode
 
 @dataclass
 class EarlierProgress:
-    """What one robot had done."""
+    """What one robot had done: moves, journeys that ended before the last one, the newest best path's
+    length, paths copied, visits ordered, and visits that are over.
+    """
 
     moves: int = 0
-    best_path: int = 0
-    """Its newest length."""
-    copied_paths: int = 0
     tracks: int = 0
-    """Journeys that had ended before its last move."""
+    best_path: int = 0
+    copied_paths: int = 0
     visits: int = 0
-    """Ordered so far; all but perhaps the last are over."""
     visits_over: int = 0
 
     def heard(self, message: Any) -> None:

@@ -221,9 +221,7 @@ def test_a_trial_ends_although_nobody_heard_a_learner_s_last_moves(tmp_path: Pat
     """The learner makes its last moves after the server was killed, and says so only in its status."""
     with ExitStack() as stack:
         laboratory = Laboratory(tmp_path, stack, moves=12)
-        server = laboratory.serve()
-        laboratory.track()
-        agent = laboratory.agent("r0")
+        server, agent, _ = laboratory.serve(), laboratory.agent("r0"), laboratory.track()
         laboratory.wait_for_moves("r0", 9)
         server.kill()
         server.wait()
