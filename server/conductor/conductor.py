@@ -95,8 +95,6 @@ class Conductor:
         """Go on from where the trial was when its last server ended."""
         for robot in self.moves.keys() & earlier.keys():
             self.moves[robot] = earlier[robot].moves
-            if robot in self.best_path:
-                self.best_path[robot] = earlier[robot].best_path
             self._visits.take_up(robot, earlier[robot])
 
     def _note_move(self, received: Received[pb.Move], t_ns: int) -> None:

@@ -16,13 +16,12 @@ from swarm.messages.validation import BadMessageError, decode
 
 @dataclass
 class EarlierProgress:
-    """What one robot had done: moves, journeys that ended before the last one, the newest best path's
-    length, paths copied, visits ordered, and visits that are over.
+    """What one robot had done: moves, journeys that ended before the last one, paths copied, visits ordered,
+    and visits that are over.
     """
 
     moves: int = 0
     tracks: int = 0
-    best_path: int = 0
     copied_paths: int = 0
     visits: int = 0
     visits_over: int = 0
@@ -32,8 +31,6 @@ class EarlierProgress:
         if isinstance(message, pb.Move):
             self.moves = max(self.moves, message.number)
             self.tracks = max(self.tracks, message.track - 1)
-        elif isinstance(message, pb.BestPath):
-            self.best_path = message.length
         elif isinstance(message, pb.PathRemembered):
             self.copied_paths += message.visit > 0
         elif isinstance(message, pb.Order):
@@ -42,7 +39,7 @@ class EarlierProgress:
             self.visits_over = max(self.visits_over, message.visit)
 
 
-HEARD = (topics.MOVE, topics.BEST_PATH, topics.PATH, topics.ORDER, topics.VISIT)
+HEARD = (topics.MOVE, topics.PATH, topics.ORDER, topics.VISIT)
 
 
 def earlier_progress(logs: Sequence[Path]) -> dict[str, EarlierProgress]:

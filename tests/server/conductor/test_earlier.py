@@ -20,11 +20,11 @@ def test_what_each_robot_did_adds_up_over_the_logs(tmp_path: Path) -> None:
     second.add("robot/imitator/order", pb.Order(kind=pb.Order.WATCH, visit=2))
     second.add("robot/imitator/visit", pb.Visit(visit=2, phase=pb.Visit.READY))
     second.add("robot/imitator/move", pb.Move(number=15, track=4))
-    second.add("robot/loner/best_path", pb.BestPath(move=10, length=33, cap=100))
+    second.add("robot/loner/move", pb.Move(number=2, track=1))
     found = earlier_progress([first.close(), second.close()])
     assert found == {
         "imitator": EarlierProgress(moves=15, tracks=3, copied_paths=1, visits=2, visits_over=1),
-        "loner": EarlierProgress(best_path=33),
+        "loner": EarlierProgress(moves=2),
     }
 
 
