@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection
 
+from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Item
 from swarm.messages.topics import topic_of
 from swarm.runtime.identity import Fingerprint
 from swarm.runtime.liveliness import Presence
 
+Tell = Callable[[str, str, pb.Event.Level.ValueType], None]
+"""Tells of something that a person should know: an event's name, its text, its level."""
 MOST_SAID = 1000
 """Refusals that are told one by one; a stranger may make up new epochs for ever."""
 
@@ -19,31 +22,29 @@ class Admission:
     An epoch that was admitted stays so: what a process sent before it left arrives after it has gone.
     """
 
-    def __init__(
-        self, identity: Fingerprint, robots: Collection[str], own_epoch: int, refuse: Callable[[str], None]
-    ) -> None:
+    def __init__(self, identity: Fingerprint, robots: Collection[str], own_epoch: int, tell: Tell) -> None:
         self._identity = identity
         self._robots = robots
-        self._refuse = refuse
+        self._tell = tell
         self._served_by = {own_epoch}
         self._admitted: set[tuple[str, int]] = set()
         self._said: set[str] = set()
 
-    def admit(self, presences: Iterable[Presence]) -> None:
-        """Take in who is there, or say once why not."""
-        for presence in presences:
-            reason = self._reason_against(presence)
-            if reason:
-                who = f"{presence.kind} {presence.name!r} on host {presence.host!r}"
-                self._say(f"{who} does not take part: {reason}")
-            elif presence.kind == "robot":
-                self._admitted.add((presence.name, presence.epoch))
-            else:
-                self._served_by.add(presence.epoch)
+    def admits(self, presence: Presence) -> bool:
+        """Whether somebody who is present takes part; if not, the reason is told once."""
+        reason = self._reason_against(presence)
+        if reason:
+            who = f"{presence.kind} {presence.name!r} on host {presence.host!r}"
+            self._say(f"{who} does not take part: {reason}")
+        elif presence.kind == "robot":
+            self._admitted.add((presence.name, presence.epoch))
+        elif presence.kind == "tracker":
+            self._served_by.add(presence.epoch)
+        return not reason
 
-    def takes_part(self, presence: Presence) -> bool:
-        """Whether somebody who is present is of this run."""
-        return not self._reason_against(presence)
+    def knows(self, epoch: int) -> bool:
+        """Whether an epoch is of somebody who took part."""
+        return epoch in self._served_by or any(epoch == admitted for _, admitted in self._admitted)
 
     def accepts(self, item: Item) -> bool:
         """Whether a message is the run's: a robot speaks under its own keys, tracker and server under all.
@@ -73,4 +74,4 @@ class Admission:
     def _say(self, text: str) -> None:
         if text not in self._said and len(self._said) < MOST_SAID:
             self._said.add(text)
-            self._refuse(text)
+            self._tell("refused", text, pb.Event.WARNING)

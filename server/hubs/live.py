@@ -48,7 +48,7 @@ class LiveHub:
         self._inboxes = [session.inbox(key, Delivery.EVERY) for key in EVERYTHING]
         epoch = time.time_ns()
         self._live = LivePublisher(session, clock, epoch)
-        self._admission = Admission(identity.fingerprint, self._robots, epoch, self._refused)
+        self._admission = Admission(identity.fingerprint, self._robots, epoch, self._tell)
         self._arrivals = [session.arrivals(key) for key in THOSE_WHO_TAKE_PART]
         session.answer(RUN_IDENTITY, identity.pack())
         self.without_header = 0
@@ -92,16 +92,17 @@ class LiveHub:
     def _taking_part(self) -> set[str]:
         """The robots of this run that are alive now."""
         there = present(self._session, "robot")
-        return {presence.name for presence in there if self._admission.takes_part(presence)}
+        return {presence.name for presence in there if self._admission.admits(presence)}
 
     def _admit_arrivals(self) -> None:
         for arrivals in self._arrivals:
-            self._admission.admit(parsed(sample.key for sample in arrivals.poll()))
+            for presence in parsed(sample.key for sample in arrivals.poll()):
+                self._admission.admits(presence)
 
-    def _refused(self, text: str) -> None:
+    def _tell(self, name: str, text: str, level: pb.Event.Level.ValueType) -> None:
+        """An event in the log, and a line for whoever watches."""
         self._warn(text)
-        event = pb.Event(level=pb.Event.WARNING, name="refused", text=text)
-        self.publish(topics.SERVER_EVENT, event)
+        self.publish(topics.SERVER_EVENT, pb.Event(level=level, name=name, text=text))
 
     def _items(self, samples: list[WireSample]) -> Iterator[Item]:
         for sample in samples:
