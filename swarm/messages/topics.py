@@ -104,7 +104,7 @@ LOCKSTEP_TICK = "lockstep/tick/{process}"
 LOCKSTEP_DONE = "lockstep/done"
 ALIVE = "alive/{kind}/{name}/{host}/{epoch}/{identity}"
 """Presence (liveliness tokens): kind is robot, tracker, server or process; identity is a fingerprint."""
-NO_ROBOT = frozenset(topic.pattern.split("/")[0] for topic in TABLE) | {"view"}
+NO_ROBOT = {topic.pattern.split("/")[0] for topic in TABLE if "{robot}" not in topic.pattern} | {"view"}
 """What the tables of a log call those who are no robot: no robot may be called so. `view` is the server's."""
 RUN_IDENTITY = "run/identity"
 """Asked, not published: the server answers with the run's id and every setting."""

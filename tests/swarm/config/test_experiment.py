@@ -51,7 +51,7 @@ def test_a_good_file_and_its_defaults(tmp_path: Path) -> None:
     assert experiment.compartment(pupil).centre(0) == pytest.approx((1.56, 1.14))
 
 
-@pytest.mark.parametrize("name", ["run", "tracker", "server", "robot", "sim", "view"])
+@pytest.mark.parametrize("name", ["run", "tracker", "server", "view"])
 def test_names_that_tables_use_otherwise_are_no_robot_s(tmp_path: Path, name: str) -> None:
     with pytest.raises(UserError, match=rf"small\.toml:\d+: 'id' is '{name}', as in keys that name no robot"):
         load(tmp_path, GOOD.replace("pupil", name))
