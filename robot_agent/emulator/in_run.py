@@ -16,6 +16,7 @@ from swarm.geometry import Pose
 from swarm.learning.random import spawned_generator
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.node import Node
 from swarm.runtime.process import OneLineParser, add_common_arguments, joined, load_experiment
 from swarm.signals import leave_on_signals
@@ -27,8 +28,9 @@ def emulate_robots(arguments: argparse.Namespace) -> None:
     leave_on_signals()
     places = addresses(arguments.address)
     faults = Faults.parse(arguments.fault)
+    identity = RunIdentity.of(experiment, arguments.trial)
     with (
-        joined(arguments, "emulator", ["robots"], experiment.simulation.tick_s) as node,
+        joined(arguments, "emulator", ["robots"], experiment.simulation.tick_s, identity) as node,
         ExitStack() as served,
     ):
         robots = [
