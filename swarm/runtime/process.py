@@ -106,13 +106,13 @@ def joined(
         settings = patient(settings)
     say = _say_nothing if arguments.supervised else _say
     with Session(settings, partial(say, f"waiting for the server at {settings.endpoint}")) as session:
-        say(f"connected to the server at {settings.endpoint}")
         for name in names:
             claim(session, Presence(kind, name, socket.gethostname(), epoch, str(identity.fingerprint)))
         if arguments.lockstep:
             yield LockstepNode(session, arguments.process)
         else:
             run_id = agreed_run(session, identity, unix_clock())
+            say(f"connected to the server at {settings.endpoint}")
             simulated = arguments.started_ns
             clock = scaled_clock(simulated, arguments.speed) if simulated else unix_clock()
             node = LiveNode(session, clock, period_s, epoch, run_id, say)

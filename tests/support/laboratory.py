@@ -16,6 +16,7 @@ from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 from tests.support.swarm_runs import ROOT, experiment_text, learners, write_experiment
 
+CONNECTION = ("waiting for the server", "connected to", "lost the server", "resumed: the server")
 SMALL_AND_QUICK = """cell_m = 0.05
 columns = 2
 rows = 2
@@ -89,8 +90,9 @@ class Laboratory:
 
 
 def line_of(process: subprocess.Popen[str], code: int) -> str:
-    """The one line that a process leaves with."""
+    """The one line that a process leaves with; what it told of its connection before stands above it."""
     _, said = process.communicate()
     assert process.returncode == code, said
-    assert len(said.splitlines()) == 1, said
-    return said
+    *above, line = said.splitlines()
+    assert all(before.startswith(CONNECTION) for before in above), said
+    return line
