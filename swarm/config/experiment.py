@@ -24,7 +24,7 @@ from swarm.learning.learner import Learner
 from swarm.learning.memory import Approach, ImitationMemory, ObservedPath
 from swarm.learning.q_table import QTable
 from swarm.learning.random import spawned_generator
-from swarm.messages.topics import is_id
+from swarm.messages.topics import NO_ROBOT, is_id
 
 OLDEST_POSE_S = 0.9
 """A tenth below the second at which a robot stands for want of a newer pose."""
@@ -369,6 +369,9 @@ def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file
     for name, value in (("id", robot.id), ("condition", robot.group)):
         if not is_id(value):
             raise file.error((*where, name), f"{name!r} is {value!r}; {_ID_RULE}")
+    if robot.id in NO_ROBOT:
+        names = ", ".join(sorted(NO_ROBOT))
+        raise file.error((*where, "id"), f"'id' is {robot.id!r}, as in keys that name no robot ({names})")
     if robot.paths and robot.role is not Role.LEARNER:
         raise file.error((*where, "paths"), f"{robot.id!r} is no learner: it cannot be given paths")
     if len(robot.paths) > experiment.learning.capacity:
