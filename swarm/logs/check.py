@@ -25,9 +25,6 @@ from swarm.logs.trial_logs import as_one, by_trial, logs_in
 from swarm.messages import topics
 from swarm.messages.validation import MAX_T_NS
 
-MAY_BE_EMPTY = (topics.COMMAND,)
-"""A robot that stands and knows no pose yet commands nothing but zeros; any other message says something."""
-
 
 @dataclass(frozen=True)
 class LogCheck:
@@ -71,7 +68,6 @@ class _Contents:
     """What the messages of a trial's logs tell themselves, part by part."""
 
     health: HealthTable
-    empty: dict[str, int] = field(default_factory=dict)
     times: dict[str, str] = field(default_factory=dict)
     """key -> what is wrong with its times."""
     moves: dict[str, set[int]] = field(default_factory=dict)
@@ -83,8 +79,6 @@ class _Contents:
         if part.payloads:
             found = rows(part, log)
             rejected = len(found.rejected)
-            if part.channel.topic not in MAY_BE_EMPTY:
-                self.empty[key] = self.empty.get(key, 0) + part.payloads.count(b"")
             if part.channel.topic is topics.MOVE:
                 self.moves.setdefault(key, set()).update(found.tables[0].frame["number"])
         self.health.add(as_one(part, log), rejected)
@@ -100,8 +94,7 @@ class _Contents:
         self._latest_t_ns[key] = int(received[-1])
 
     def damage(self) -> list[str]:
-        empty = [f"{key}: {count} empty messages" for key, count in sorted(self.empty.items()) if count]
-        return empty + [f"{key}: {what}" for key, what in sorted(self.times.items())]
+        return [f"{key}: {what}" for key, what in sorted(self.times.items())]
 
     def swallowed_moves(self, missing: Mapping[str, int]) -> list[str]:
         """What a restart swallowed, beyond the messages known to be missing: the trial numbers its moves."""

@@ -198,7 +198,7 @@ def reverse(messages: list[Message]) -> None:
 @pytest.mark.parametrize(
     ("change", "fault"),
     [
-        (empty_all, "robot/loner/best_path: 40 empty messages"),
+        (empty_all, "robot/loner/best_path: 40 messages that cannot be decoded"),
         (far_future, "robot/loner/best_path: times that cannot be, before the run or centuries after"),
         (reverse, "robot/loner/best_path: received in another order than recorded"),
     ],
