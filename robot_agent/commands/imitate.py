@@ -26,7 +26,6 @@ from swarm.config.experiment import RobotSettings
 from swarm.errors import RunFailedError, UserError
 from swarm.geometry import Pose
 from swarm.messages import topics
-from swarm.runtime.identity import RunIdentity
 from swarm.runtime.node import Node
 from swarm.runtime.process import OneLineParser, joined, load_experiment
 from swarm.signals import leave_on_signals
@@ -43,8 +42,7 @@ def imitate(arguments: argparse.Namespace) -> None:
     if not commands:
         _require_sight(experiment.robot_named(arguments.robot))
     leave_on_signals()
-    identity = RunIdentity.of(experiment, arguments.trial)
-    with joined(arguments, "imitation", [arguments.robot], experiment.simulation.tick_s, identity) as node:
+    with joined(arguments, "imitation", [arguments.robot], experiment.simulation.tick_s, None) as node:
         place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
         parts = Assembly(experiment, node, arguments.trial, place).driver_parts(arguments.robot)
         driver = make_driver(parts)

@@ -15,6 +15,10 @@ ALIVE_SERVER = "alive/server/**"
 ALIVE_ROBOTS_AND_TRACKERS = "alive/*/*/*/*/*"
 
 
+NO_IDENTITY = "-"
+"""Of a tool that takes part in no run."""
+
+
 @dataclass(frozen=True)
 class Presence:
     """A process that shows that it is alive: kind is robot, tracker or server."""
@@ -23,8 +27,8 @@ class Presence:
     name: str
     host: str
     epoch: int
-    identity: str = "-"
-    """The fingerprint of the trial that it would play; "-" says nothing."""
+    identity: str = NO_IDENTITY
+    """The fingerprint of the trial that it would play."""
 
     @property
     def key(self) -> str:

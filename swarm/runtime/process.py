@@ -25,7 +25,7 @@ from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.runtime.handshake import agreed_run
 from swarm.runtime.identity import RunIdentity
-from swarm.runtime.liveliness import Presence, claim
+from swarm.runtime.liveliness import NO_IDENTITY, Presence, claim
 from swarm.runtime.lockstep import EPOCH, LockstepNode, patient
 from swarm.runtime.node import LiveNode, Node
 from swarm.runtime.zenoh_session import Session, SessionSettings
@@ -94,24 +94,26 @@ def load_experiment(arguments: argparse.Namespace) -> Experiment:
 
 @contextmanager
 def joined(
-    arguments: argparse.Namespace, kind: str, names: list[str], period_s: float, identity: RunIdentity
+    arguments: argparse.Namespace, kind: str, names: list[str], period_s: float, identity: RunIdentity | None
 ) -> Iterator[Node]:
     """The node of a process that is present under its names for as long as the block runs.
 
-    UserError if the run on the server is not the one that `identity` tells of.
+    UserError if the run on the server is not the one that `identity` tells of; None is for a tool that takes
+    part in no run, and needs none.
     """
     epoch = EPOCH if arguments.lockstep else time.time_ns()
     settings = SessionSettings(arguments.connect, config=arguments.zenoh_config)
     if arguments.lockstep:
         settings = patient(settings)
     say = _say_nothing if arguments.supervised else _say
+    shown = str(identity.fingerprint) if identity else NO_IDENTITY
     with Session(settings, partial(say, f"waiting for the server at {settings.endpoint}")) as session:
         for name in names:
-            claim(session, Presence(kind, name, socket.gethostname(), epoch, str(identity.fingerprint)))
+            claim(session, Presence(kind, name, socket.gethostname(), epoch, shown))
         if arguments.lockstep:
             yield LockstepNode(session, arguments.process)
         else:
-            run_id = agreed_run(session, identity, unix_clock())
+            run_id = agreed_run(session, identity, unix_clock()) if identity else ""
             say(f"connected to the server at {settings.endpoint}")
             simulated = arguments.started_ns
             clock = scaled_clock(simulated, arguments.speed) if simulated else unix_clock()

@@ -24,13 +24,13 @@ name = "pair"
 [[robot]]
 id = "shows"
 driver = "serial"
-south_west_m = [0.0, 0.0]
+south_west_m = [0.2, 0.2]
 """
 SIMULATED = """\
 [[robot]]
 id = "looks"
 watches = "shows"
-south_west_m = [1.4, 0.0]
+south_west_m = [1.6, 0.2]
 """
 PATTERN = "0 0.25, 90 0.15, -90 0.1"
 CORNERS = [(0.0, 0.0), (0.25, 0.0), (0.25, 0.15), (0.35, 0.15)]
