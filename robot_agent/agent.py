@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from robot_agent.activities import Activity, Finished, Seen, Task, Visiting, Waiting
-from robot_agent.checkpoint import Checkpoint
+from robot_agent.checkpoint import Checkpoint, Saved
 from robot_agent.drivers.health import TellsHealth
 from robot_agent.drivers.interfaces import Body
 from robot_agent.drivers.kinematics import WheelSpeeds
@@ -82,16 +80,28 @@ class Agent:
             self._tells_health.health if self._tells_health else None,
         )
 
-    def resume_from(self, checkpoint: Checkpoint) -> None:
-        """Keep the checkpoint up to date after every move, and go on from it if it has something."""
+    def resume_from(self, checkpoint: Checkpoint) -> str:
+        """Keep the checkpoint up to date after every move, and go on from it if it has something.
+
+        What the robot goes on from is put into the log, and returned for the terminal; empty if nothing.
+        """
         self._checkpoint = checkpoint
         saved = checkpoint.load()
-        if saved:
-            try:
-                self._task.policy.restore(saved["policy"])
-                self.activity = Waiting(self._task, self._task.cell(saved["state"]))
-            except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-                raise UserError(f"{checkpoint.path}: does not fit this experiment ({error})") from error
+        if saved is None:
+            return ""
+        try:
+            self._task.policy.restore(saved.policy)
+            self.activity = Waiting(self._task, self._task.cell(saved.state))
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+            raise UserError(f"{checkpoint.path}: does not fit this experiment ({error})") from error
+        return self._tell_resumed(saved)
+
+    def _tell_resumed(self, saved: Saved) -> str:
+        where = "this run" if saved.same_run else f"another run, {saved.run_id}"
+        text = f"goes on after move {self._task.policy.moves} from what it learnt in {where}"
+        tell = self._reporter.info if saved.same_run else self._reporter.warning
+        tell("resumed", text)
+        return text
 
     def stop(self) -> None:
         """Motors off, for good."""
@@ -117,12 +127,12 @@ class Agent:
         if self._checkpoint:
             grid = self._task.compartment.grid
             state = grid.start if state == grid.goal else state
-            self._keep(self._checkpoint, {"state": state, "policy": self._task.policy.snapshot()})
+            self._keep(self._checkpoint, state)
 
-    def _keep(self, checkpoint: Checkpoint, snapshot: dict[str, Any]) -> None:
+    def _keep(self, checkpoint: Checkpoint, state: int) -> None:
         """A full disk is no reason to stand still: the robot goes on, and says what a restart would lose."""
         try:
-            checkpoint.save(snapshot)
+            checkpoint.save(state, self._task.policy.snapshot())
         except OSError as error:
             if self._saves:
                 self._reporter.warning("checkpoint", f"what is learnt is not saved: {in_words(error)}")

@@ -11,13 +11,14 @@ from pathlib import Path
 from robot_agent.addresses import add_address_argument, addresses
 from robot_agent.agent import Agent
 from robot_agent.assembly import Assembly, Place
-from robot_agent.checkpoint import Checkpoint
+from robot_agent.checkpoint import Checkpoint, OtherRun
 from robot_agent.checks import robot_checks
 from swarm.checkup.finding import require_good
 from swarm.checkup.machine import writable
 from swarm.config.arguments import place
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, guarded, nearest
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
     add_common_arguments,
@@ -67,14 +68,14 @@ def run(arguments: argparse.Namespace) -> None:
     leave_on_signals()
     if arguments.supervised:
         leave_with_parent()
-    with joined(arguments, "robot", names, experiment.simulation.tick_s) as node:
+    identity = RunIdentity.of(experiment, arguments.trial)
+    with joined(arguments, "robot", names, experiment.simulation.tick_s, identity) as node:
         place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
         assembly = Assembly(experiment, node, arguments.trial, place)
         agents = [assembly.agent(name) for name in names]
         if arguments.state:
-            run = f"{experiment.run.name}, seed {experiment.run.seed}, trial {arguments.trial}"
             for agent, name in zip(agents, names, strict=True):
-                agent.resume_from(Checkpoint(arguments.state, name, run))
+                _go_on(agent, name, arguments, node.run_id, str(identity.fingerprint))
         try:
             node.run(partial(_step, agents))
         finally:
@@ -89,6 +90,12 @@ def _check(arguments: argparse.Namespace, experiment: Experiment, names: list[st
     require_good(arguments.experiment, robot_checks(experiment, robots))
     if arguments.state:
         require_good(arguments.experiment, [writable("--state", arguments.state)])
+
+
+def _go_on(agent: Agent, name: str, arguments: argparse.Namespace, run_id: str, identity: str) -> None:
+    text = agent.resume_from(Checkpoint(arguments.state, name, run_id, identity, arguments.other_run))
+    if text:
+        print(f"{name}: {text}", file=sys.stderr, flush=True)
 
 
 def _step(agents: list[Agent], t_ns: int) -> None:
@@ -134,8 +141,17 @@ def _parser() -> OneLineParser:
         "--state",
         type=place,
         metavar="DIR",
-        help="keep what was learnt here; go on from it after a restart",
+        help="keep what was learnt here; after a restart in the same run the robot goes on from it",
     )
+    parser.set_defaults(other_run=OtherRun.REFUSED)
+    of_another_run = parser.add_mutually_exclusive_group()
+    for option, choice, meaning in (
+        ("--fresh", OtherRun.FRESH, "begin anew if --state is of another run; its file gets another name"),
+        ("--resume", OtherRun.RESUMED, "go on from what was learnt in another run; the log tells of it"),
+    ):
+        of_another_run.add_argument(
+            option, action="store_const", dest="other_run", const=choice, help=meaning
+        )
     parser.add_argument(
         "--keys",
         type=place,

@@ -70,10 +70,13 @@ class Reporter:
             _tell_health(message, health)
         self._publish(topics.STATUS, message)
 
-    def warning(self, name: str, text: str) -> None:
+    def info(self, name: str, text: str) -> None:
         """Something that a person should be able to read in the log."""
-        event = pb.Event(level=pb.Event.WARNING, name=name, text=text)
-        self._publish(topics.EVENT, event)
+        self._publish(topics.EVENT, pb.Event(level=pb.Event.INFO, name=name, text=text))
+
+    def warning(self, name: str, text: str) -> None:
+        """Something that a person should look at."""
+        self._publish(topics.EVENT, pb.Event(level=pb.Event.WARNING, name=name, text=text))
 
     def move(self, move: MoveRecord) -> None:
         """What came of a move."""

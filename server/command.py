@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import argparse
+import secrets
 from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from rich.console import Console
 
+from server.interrupted_run import InterruptedRun
 from server.processes.environment import Environment, laboratory, require_emulation, simulated
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
 from swarm.checkup.checkup import experiment_findings, findings
 from swarm.checkup.finding import Level, require_good
-from swarm.checkup.machine import room
+from swarm.checkup.machine import room, writable
 from swarm.cli.output import print_json
 from swarm.config import arguments
 from swarm.config.experiment import Experiment
@@ -24,6 +27,9 @@ from swarm.errors import UserError
 from swarm.runtime.process import OneLineParser
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from swarm.signals import leave_on_signals
+
+RUN_ID_BYTES = 6
+"""12 digits: a laboratory's thousand runs share one with a probability of 2 in a billion."""
 
 
 def run() -> None:
@@ -34,28 +40,47 @@ def run() -> None:
 def conduct(asked: argparse.Namespace) -> None:
     """Conduct the experiment's trials on simulated robots or, with --listen, on a laboratory's."""
     leave_on_signals()
-    experiment = Experiment.load(asked.experiment)
-    experiment = experiment.changed(asked.seed, asked.moves, asked.processes)
-    _check(asked, experiment)
-    with RunProgress(experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
-        trials: Sequence[int] = range(experiment.run.trials)
+    plan = _resumed(asked) if asked.resume else _begun(asked)
+    with RunProgress(plan.experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
+        trials: Sequence[int] = range(plan.experiment.run.trials)
         environment: Environment = partial(
-            simulated, experiment, asked.speed, progress.warn, emulate=asked.emulate
+            simulated, plan.experiment, asked.speed, progress.warn, emulate=asked.emulate
         )
-        if not asked.listen:
-            require_emulation(experiment, asked.speed, emulate=asked.emulate)
-        else:
+        if asked.listen:
             settings = SessionSettings(asked.listen, hub=True, config=asked.zenoh_config)
             session = open_session.enter_context(Session(settings))
-            trials = [asked.trial]
-            _warn_of_bad(experiment, progress)
-            environment = partial(laboratory, experiment, session, progress.warn)
-        directory = RunDirectory.create(asked.out, experiment.run.name)
-        summary = Run(experiment, asked.experiment, directory, environment, trials, progress).run()
+            trials = [plan.trial]
+            _warn_of_bad(plan.experiment, progress)
+            environment = partial(laboratory, plan.experiment, session, progress.warn)
+        directory = plan.directory or RunDirectory.create(asked.out, plan.experiment.run.name)
+        run = Run(plan.experiment, plan.file, directory, environment, trials, progress, plan.run_id)
+        summary = run.run()
     if asked.json:
         print_json(summary)
     else:
         print_summary(summary)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is to be run, and for a run that goes on, where."""
+
+    experiment: Experiment
+    file: Path
+    trial: int
+    run_id: str
+    directory: RunDirectory | None = None
+
+
+def _begun(asked: argparse.Namespace) -> Plan:
+    if asked.experiment is None:
+        raise UserError("EXPERIMENT.toml is missing: say what is run, or with --resume which run goes on")
+    experiment = Experiment.load(asked.experiment)
+    experiment = experiment.changed(asked.seed, asked.moves, asked.processes)
+    _check(asked, experiment)
+    joinable = asked.listen or asked.speed
+    run_id = secrets.token_hex(RUN_ID_BYTES) if joinable else ""
+    return Plan(experiment, asked.experiment, asked.trial or 0, run_id)
 
 
 def _check(asked: argparse.Namespace, experiment: Experiment) -> None:
@@ -63,13 +88,31 @@ def _check(asked: argparse.Namespace, experiment: Experiment) -> None:
 
     What a laboratory's boards have is looked at again on the boards, by their agents.
     """
-    if asked.listen and asked.speed is not None:
-        raise UserError("--speed is for simulations: with --listen a run goes as fast as life")
     if asked.listen:
+        _refuse_speed(asked)
         out = asked.out or Path("runs") / experiment.run.name
         require_good(asked.experiment, room(experiment, out))
     else:
         require_good(asked.experiment, findings(experiment, asked.out))
+        require_emulation(experiment, asked.speed, emulate=asked.emulate)
+
+
+def _refuse_speed(asked: argparse.Namespace) -> None:
+    if asked.speed is not None:
+        raise UserError("--speed is for simulations: with --listen a run goes as fast as life")
+
+
+def _resumed(asked: argparse.Namespace) -> Plan:
+    own = ("experiment", "out", "seed", "moves", "trial")
+    given = [name for name in own if getattr(asked, name) is not None]
+    if given:
+        raise UserError(f"--resume goes on with a run as it was begun: leave out {', '.join(given)}")
+    if not asked.listen:
+        raise UserError("--resume waits for the robots of a laboratory: say where with --listen")
+    _refuse_speed(asked)
+    run = InterruptedRun.read(asked.resume)
+    require_good(asked.resume, [writable("--resume", asked.resume)])
+    return Plan(run.experiment, run.file, run.trial, run.run_id, run.directory)
 
 
 def _warn_of_bad(experiment: Experiment, progress: RunProgress) -> None:
@@ -85,7 +128,7 @@ def _parser() -> OneLineParser:
         description="Runs an experiment and records everything: on simulated robots, whose processes it "
         "starts, or with --listen on the robots of a laboratory.",
     )
-    parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="what is run")
+    parser.add_argument("experiment", type=Path, nargs="?", metavar="EXPERIMENT.toml", help="what is run")
     parser.add_argument(
         "--out", type=arguments.place, metavar="DIR", help="a new directory (runs/NAME-001 and so on)"
     )
@@ -116,9 +159,14 @@ def _parser() -> OneLineParser:
     real.add_argument(
         "--trial",
         type=arguments.trial,
-        default=0,
         metavar="N",
         help="a laboratory runs one trial at a time, from 0; the agents are started with the same number",
+    )
+    real.add_argument(
+        "--resume",
+        type=arguments.place,
+        metavar="RUN_DIRECTORY",
+        help="go on with a run whose server ended before its trial did; the agents need no restart",
     )
     real.add_argument(
         "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"

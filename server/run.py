@@ -12,16 +12,18 @@ from pathlib import Path
 from typing import Any
 
 from server.conductor.conductor import Conductor
+from server.conductor.earlier import earlier_progress
 from server.processes.environment import Environment, TrialPlan
 from server.progress import RunProgress
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
 from server.recording.provenance import metadata, versions
 from server.recording.recorder import Recorder, digest
-from server.run_directory import RunDirectory
+from server.run_directory import MANIFEST, RunDirectory
 from server.trial import Trial, TrialResult
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, in_words
+from swarm.runtime.identity import RunIdentity
 
 
 @dataclass
@@ -35,11 +37,17 @@ class Run:
     trials: Sequence[int]
     """Their numbers, in order."""
     progress: RunProgress
+    run_id: str = ""
+    """Random, and new with every run; empty in a lockstep, which nobody can join and anybody can repeat."""
     results: list[TrialResult] = field(default_factory=list)
     versions: dict[str, str] = field(default_factory=versions)
 
     def run(self) -> dict[str, Any]:
         """All trials; the run's directory is complete after each of them."""
+        with self.directory.held():
+            return self._held()
+
+    def _held(self) -> dict[str, Any]:
         began = time.monotonic()
         copy = self._begin()
         state = "interrupted"
@@ -68,13 +76,16 @@ class Run:
 
     def _trial(self, trial: int, file: Path) -> None:
         """Also of a trial that is interrupted it is known how far it came."""
-        plan = TrialPlan(trial, file, self.directory.output(trial))
+        program = self.versions["swarm-runtime"]
+        identity = RunIdentity.of(self.experiment, trial, self.run_id, program)
+        plan = TrialPlan(identity, file, self.directory.output(trial))
         with self.environment(plan) as environment:
             reporter = environment.reporter
-            conductor = Conductor(self.experiment, trial, reporter, environment.carrier)
-            recorder = Recorder(
-                self.directory.log(trial), metadata(self.experiment, file, trial, self.versions)
-            )
+            *before, log = self.directory.logs(trial)
+            earlier = earlier_progress(before)
+            conductor = Conductor(self.experiment, identity, reporter, environment.carrier, earlier)
+            about = metadata(self.experiment, file, identity, self.versions, self.directory.part)
+            recorder = Recorder(log, about)
             health, views = Health(reporter), Views(self.experiment)
             played = Trial(environment, conductor, recorder, health, views, self.progress.show)
             try:
@@ -83,11 +94,12 @@ class Run:
                 self.results.append(played.result())
 
     def _summary(self, wall_s: float) -> dict[str, Any]:
-        logs = [self.directory.log(trial) for trial in self.trials]
+        logs = [log for trial in self.trials for log in self.directory.logs(trial)]
         logs = [log for log in logs if log.exists()]
         sim_s = sum(result.sim_s for result in self.results)
         return {
             "run": str(self.directory.path),
+            "run_id": self.run_id,
             "log": [str(log) for log in logs],
             "digest": digest(logs),
             "moves": sum(result.moves for result in self.results),
@@ -116,10 +128,11 @@ class Run:
                 "role": robot.role.value,
                 "trial": trial,
                 "seed": run.seed,
-                "log": self.directory.log(trial).name,
+                "log": self.directory.logs(trial)[0].name,
                 "state": "complete" if number in complete else state,
             }
             for number, trial in enumerate(self.trials)
             for robot in self.experiment.robot
         ]
-        self.directory.write_json("manifest.json", {"name": run.name, "moves": run.moves, "trials": records})
+        about = {"name": run.name, "run_id": self.run_id, "moves": run.moves}
+        self.directory.write_json(MANIFEST, {**about, "trials": records})

@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
+import os
 import re
 import shutil
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from swarm.errors import NO_ROOM, UserError
+
+EXPERIMENT, MANIFEST = "experiment.toml", "manifest.json"
 
 
 @dataclass(frozen=True)
 class RunDirectory:
     """A run's directory: `experiment.toml`, `manifest.json` (conditions x trials x seeds), `run.json`
     (what differs between two runs of one seed), `trial-000.mcap` and so on, `output/` of the processes.
+
+    Every server that went on with a trial left a log of its own: `trial-000-2.mcap` and so on.
     """
 
     path: Path
+    part: int = 1
+    """Which of its trial's logs this server writes, counted from 1."""
+    is_new: bool = True
+    """Whether no other server has left anything here."""
 
     @classmethod
     def create(cls, path: Path | None, name: str) -> RunDirectory:
@@ -36,12 +47,46 @@ class RunDirectory:
             raise UserError(f"{chosen}: cannot be made ({error.strerror}); choose another --out") from error
         return cls(chosen)
 
+    @classmethod
+    def reopened(cls, path: Path, trial: int) -> RunDirectory:
+        """The directory of a run that another server began, for the next log of its trial.
+
+        A server that was killed in its first moment left an empty file, which makes room.
+        """
+        directory = cls(path, is_new=False)
+        while directory.log(trial).exists():
+            if directory.log(trial).stat().st_size == 0:
+                directory.log(trial).unlink()
+            else:
+                directory = replace(directory, part=directory.part + 1)
+        return directory
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """UserError if another server records into this directory; it cannot while the block runs."""
+        descriptor = os.open(self.path, os.O_RDONLY | os.O_CLOEXEC)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            yield
+        except BlockingIOError as error:
+            raise UserError(f"{self.path}: a server is recording there now; stop it first") from error
+        finally:
+            os.close(descriptor)
+
     def keep_experiment(self, file: Path) -> Path:
-        """A copy of the experiment file, byte for byte."""
-        return Path(shutil.copyfile(file, self.path / "experiment.toml"))
+        """A copy of the experiment file, byte for byte; in a run that goes on it is there."""
+        copy = self.path / EXPERIMENT
+        return Path(shutil.copyfile(file, copy)) if self.is_new else copy
 
     def log(self, trial: int) -> Path:
-        return self.path / f"{trial_name(trial)}.mcap"
+        """The log that this server writes."""
+        return self.logs(trial)[-1]
+
+    def logs(self, trial: int) -> list[Path]:
+        """All logs of a trial up to this server's, in order."""
+        name = trial_name(trial)
+        later = [f"{name}-{part}.mcap" for part in range(2, self.part + 1)]
+        return [self.path / log for log in (f"{name}.mcap", *later)]
 
     def output(self, trial: int) -> Path:
         """Where the processes of a trial print to."""
@@ -56,8 +101,10 @@ class RunDirectory:
         self._reserve.unlink(missing_ok=True)
 
     def remove(self) -> None:
-        """Leave nothing of a run that never began."""
-        shutil.rmtree(self.path, ignore_errors=True)
+        """Leave nothing of a run that never began; what another server left stays."""
+        self.release()
+        if self.is_new:
+            shutil.rmtree(self.path, ignore_errors=True)
 
     def write_json(self, name: str, content: Mapping[str, Any]) -> None:
         """Replace one of the directory's own JSON files in one step; on a full disk in the reserved room."""

@@ -8,6 +8,7 @@ from importlib import import_module
 
 from swarm.checkup.finding import require_good
 from swarm.errors import guarded
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
     add_common_arguments,
@@ -51,8 +52,9 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.supervised:
         leave_with_parent()
     period_s = system.poll_s or experiment.simulation.tick_s
+    identity = RunIdentity.of(experiment, arguments.trial)
     with (
-        joined(arguments, "tracker", ["bridge"], period_s) as node,
+        joined(arguments, "tracker", ["bridge"], period_s, identity) as node,
         system.open(Setup(experiment, node, arguments.trial)) as backend,
     ):
         arena = experiment.arena

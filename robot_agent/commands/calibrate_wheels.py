@@ -16,6 +16,7 @@ from robot_agent.navigation.wheel_calibration import Leg, WheelCalibration, cali
 from swarm.config.experiment import Experiment
 from swarm.geometry import Pose
 from swarm.messages import topics
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.node import Node
 from swarm.runtime.process import OneLineParser, joined, load_experiment
 from swarm.signals import leave_on_signals
@@ -26,7 +27,9 @@ def calibrate_wheels(arguments: argparse.Namespace) -> None:
     experiment = load_experiment(arguments)
     require_robot(arguments, experiment)
     leave_on_signals()
-    with joined(arguments, "calibration", [arguments.robot], experiment.simulation.tick_s) as node:
+    identity = RunIdentity.of(experiment, arguments.trial)
+    period_s = experiment.simulation.tick_s
+    with joined(arguments, "calibration", [arguments.robot], period_s, identity) as node:
         place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
         assembly = Assembly(experiment, node, arguments.trial, place)
         calibration = calibration_of(_legs(experiment, node, assembly, arguments.robot))

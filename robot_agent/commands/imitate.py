@@ -42,7 +42,7 @@ def imitate(arguments: argparse.Namespace) -> None:
     if not commands:
         _require_sight(experiment.robot_named(arguments.robot))
     leave_on_signals()
-    with joined(arguments, "imitation", [arguments.robot], experiment.simulation.tick_s) as node:
+    with joined(arguments, "imitation", [arguments.robot], experiment.simulation.tick_s, None) as node:
         place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
         parts = Assembly(experiment, node, arguments.trial, place).driver_parts(arguments.robot)
         driver = make_driver(parts)

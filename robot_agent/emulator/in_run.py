@@ -17,6 +17,7 @@ from swarm.geometry import Pose
 from swarm.learning.random import spawned_generator
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.node import Node
 from swarm.runtime.process import OneLineParser, add_common_arguments, joined, load_experiment
 from swarm.runtime.subscription import Subscription
@@ -29,8 +30,9 @@ def emulate_robots(arguments: argparse.Namespace) -> None:
     leave_on_signals()
     places = addresses(arguments.address)
     faults = Faults.parse(arguments.fault)
+    identity = RunIdentity.of(experiment, arguments.trial)
     with (
-        joined(arguments, "emulator", ["robots"], experiment.simulation.tick_s) as node,
+        joined(arguments, "emulator", ["robots"], experiment.simulation.tick_s, identity) as node,
         ExitStack() as served,
     ):
         robots = [

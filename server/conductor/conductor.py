@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from server.conductor.camera_views import CameraViews
 from server.conductor.carrier import Carrier
 from server.conductor.copy_errors import CopyErrors
+from server.conductor.earlier import EarlierProgress
 from server.conductor.standstill import Standstill
 from server.conductor.visits import Visits
 from server.hubs.hub import Batch
@@ -15,6 +18,7 @@ from swarm.errors import RunFailedError
 from swarm.geometry import Grid
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.subscription import Received, Subscription, Subscriptions
 
 RUN_STATE_PERIOD_NS = NS_PER_S
@@ -24,9 +28,16 @@ RUN_STATE_PERIOD_NS = NS_PER_S
 class Conductor:
     """Follows a trial from what is on the wire, and speaks to the robots by the same wire."""
 
-    def __init__(self, experiment: Experiment, trial: int, reporter: Reporter, carrier: Carrier) -> None:
+    def __init__(
+        self,
+        experiment: Experiment,
+        identity: RunIdentity,
+        reporter: Reporter,
+        carrier: Carrier,
+        earlier: Mapping[str, EarlierProgress] | None = None,
+    ) -> None:
         self._experiment = experiment
-        self._trial = trial
+        self._identity = identity
         self._reporter = reporter
         self._moves = Subscription(topics.MOVE)
         self._statuses = Subscription(topics.STATUS)
@@ -35,14 +46,8 @@ class Conductor:
         self._visit_words = Subscription(topics.VISIT)
         self._observations = Subscription(topics.OBSERVATION)
         self._truths = Subscription(topics.TRUTH)
-        heard = (
-            self._moves,
-            self._statuses,
-            self._best_paths,
-            self._paths,
-            self._visit_words,
-            self._observations,
-        )
+        learning = (self._moves, self._statuses, self._best_paths, self._paths)
+        heard = (*learning, self._visit_words, self._observations)
         self._subscriptions = Subscriptions(heard)
         self._feeds_while_watching = Subscriptions((*heard, self._truths))
         self._goal = Grid(experiment.arena.columns, experiment.arena.rows).goal
@@ -58,6 +63,7 @@ class Conductor:
         """Moves made so far, by robot."""
         self.best_path = {robot.id: 0 for robot in experiment.learners}
         """The newest best path length, by learner; 0 before the first."""
+        self._take_up(earlier or {})
 
     @property
     def ended(self) -> bool:
@@ -76,7 +82,7 @@ class Conductor:
         for move in self._moves.take():
             self._note_move(move, batch.t_ns)
         for status in self._statuses.take():
-            self._note_status(status.robot, status.message.moves)
+            self._note_status(status)
         for best in self._best_paths.take():
             self.best_path[best.robot] = best.message.length
         self._conduct_visits(batch.t_ns)
@@ -84,6 +90,12 @@ class Conductor:
         if batch.t_ns >= self._state_due_ns or self._ending:
             self._state_due_ns = batch.t_ns + RUN_STATE_PERIOD_NS
             self.announce(pb.RunState.ENDED if self._ending else pb.RunState.RUNNING)
+
+    def _take_up(self, earlier: Mapping[str, EarlierProgress]) -> None:
+        """Go on from where the trial was when its last server ended."""
+        for robot in self.moves.keys() & earlier.keys():
+            self.moves[robot] = earlier[robot].moves
+            self._visits.take_up(robot, earlier[robot])
 
     def _note_move(self, received: Received[pb.Move], t_ns: int) -> None:
         robot, move = received.robot, received.message
@@ -94,10 +106,11 @@ class Conductor:
         if move.next_state == self._goal:
             self._visits.track_ended(robot, move.track)
 
-    def _note_status(self, robot: str, moves: int) -> None:
-        """A server that was started again learns so of moves that were made before, perhaps all of them."""
+    def _note_status(self, received: Received[pb.Status]) -> None:
+        """A robot tells here of moves that nobody heard, made without a server or before this one began."""
+        robot = received.robot
         if robot in self.moves:
-            self.moves[robot] = max(moves, self.moves[robot])
+            self.moves[robot] = max(received.message.moves, self.moves[robot])
 
     def _conduct_visits(self, t_ns: int) -> None:
         for path in self._paths.take():
@@ -134,5 +147,8 @@ class Conductor:
 
     def announce(self, phase: pb.RunState.Phase.ValueType) -> None:
         """Tell everyone the phase of the trial."""
-        state = pb.RunState(phase=phase, trial=self._trial, experiment=self._experiment.run.name)
+        identity = self._identity
+        state = pb.RunState(phase=phase, trial=identity.trial, experiment=self._experiment.run.name)
+        if identity.run_id:
+            state.run_id, state.identity = identity.run_id, str(identity.fingerprint)
         self._reporter.publish(topics.RUN_STATE, state)

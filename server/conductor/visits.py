@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from server.conductor.carrier import Carrier
+from server.conductor.earlier import EarlierProgress
 from server.reporter import Reporter
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment, RobotSettings
@@ -32,6 +33,8 @@ class VisitRecord:
     under_way: bool = False
     carried: bool = False
     """At the observer's place, or on its way there."""
+    interrupted: bool = False
+    """Under way when the trial's last server ended."""
 
 
 class Visits:
@@ -49,6 +52,14 @@ class Visits:
     def watching(self) -> dict[str, str]:
         """Observers at their places, each with the robot that it watches."""
         return {name: record.robot.watches for name, record in self._records.items() if record.carried}
+
+    def take_up(self, robot: str, earlier: EarlierProgress) -> None:
+        """Go on from where a learner was when the trial's last server ended."""
+        record = self._records.get(robot)
+        if record is not None:
+            record.begun, record.tracks = earlier.visits, earlier.tracks
+            record.paths += earlier.copied_paths
+            record.interrupted = earlier.visits > earlier.visits_over
 
     def track_ended(self, robot: str, tracks: int) -> None:
         """A learner has made so many journeys to its goal."""
@@ -73,9 +84,15 @@ class Visits:
             self._send_home(record)
 
     def order_due(self, t_ns: int) -> None:
-        """Order every visit that is due and possible; repeat those under way, for an agent that restarted."""
+        """Order every visit that is due and possible; repeat those under way, for an agent that restarted.
+
+        A visit that a server's end interrupted is over: nobody knows what the observer was told meanwhile.
+        """
         for record in self._records.values():
-            if self._is_due(record) and self._is_possible(record):
+            if record.interrupted:
+                record.interrupted = False
+                self._send_home(record)
+            elif self._is_due(record) and self._is_possible(record):
                 record.begun += 1
                 record.under_way = True
                 self._order_to_watch(record, t_ns)

@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from google.protobuf.message import Message
 
+from server.hubs.admission import Admission
 from server.hubs.attendance import Attendance
 from server.hubs.clock_watch import ClockWatch
 from server.hubs.hub import Batch
@@ -18,8 +19,9 @@ from swarm.logs.ending import Sender
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
-from swarm.messages.topics import ACCOUNT, Delivery, Topic, topic_of
+from swarm.messages.topics import ACCOUNT, RUN_IDENTITY, Delivery, Topic, topic_of
 from swarm.runtime.account import unpack_account
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import ALIVE_ROBOTS_AND_TRACKERS, present
 from swarm.runtime.node import LivePublisher
 from swarm.runtime.zenoh_session import QUEUE_DEPTH, Session, WireSample
@@ -41,6 +43,7 @@ class LiveHub:
         session: Session,
         clock: WallClock,
         experiment: Experiment,
+        identity: RunIdentity,
         check: Callable[[], None],
         warn: Callable[[str], None],
     ) -> None:
@@ -52,7 +55,9 @@ class LiveHub:
         self._inboxes = [session.inbox(key, Delivery.EVERY) for key in EVERYTHING]
         self._live = LivePublisher(session, clock, epoch=time.time_ns())
         robots = [robot.id for robot in experiment.robot]
-        self._attendance = Attendance(session.presence_watch(ALIVE_ROBOTS_AND_TRACKERS), robots, self._tell)
+        self._admission = Admission(identity.fingerprint, robots, self._live.epoch, self._tell)
+        watch = session.presence_watch(ALIVE_ROBOTS_AND_TRACKERS)
+        self._attendance = Attendance(watch, robots, self._admission.admits, self._tell)
         self._clocks = ClockWatch(clock.speed, self._tell)
         self._early: deque[Item] = deque(maxlen=QUEUE_DEPTH)
         self._ended = False
@@ -60,6 +65,7 @@ class LiveHub:
         self._accounts: dict[Sender, int] = {}
         self._gone: set[int] = set()
         """Epochs of the processes that have given their closing account."""
+        session.answer(RUN_IDENTITY, identity.pack())
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
 
@@ -74,8 +80,7 @@ class LiveHub:
         while missing := self._attendance.missing:
             self._check()
             next(self._ticks)
-            self._early.extend(item for item in self._arrived() if _must_not_be_lost(item.key))
-            self._attendance.look()
+            self._early.extend(item for item in self._received() if _must_not_be_lost(item.key))
             if time.monotonic() - named_s > NAMED_EVERY_S:
                 named_s = time.monotonic()
                 self._warn(f"waiting for {', '.join(missing)}")
@@ -84,27 +89,28 @@ class LiveHub:
         self._live.publish(topic, message, robot)
         if isinstance(message, pb.RunState) and message.phase == pb.RunState.ENDED:
             self._ended = True
+            self._attendance.dismiss()
 
     def advance(self) -> None:
         """In real time the processes need no leave."""
 
     def gather(self) -> Batch:
         t_ns = next(self._ticks)
-        if not self._ended:  # At the end everyone leaves, which is nothing to tell of.
+        if not self._ended:
             self._check()
-            self._attendance.look()
-        items = [*self._early, *self._arrived()]
+        items = [*self._early, *self._received()]
         self._early.clear()
         self._clocks.step(items, self._clock.now_ns())
         return Batch(t_ns, items)
 
     def unsent(self) -> Batch:
         """What has arrived by now: the server's own messages come back over the wire like any other."""
-        return Batch(self._clock.now_ns(), list(self._arrived()))
+        return Batch(self._clock.now_ns(), self._received())
 
     def finish(self) -> Batch:
         """The run's state ENDED has told the processes already: wait until they have given account."""
-        leaving = {one.epoch for kind in ("robot", "tracker") for one in present(self._session, kind)}
+        there = [one.epoch for kind in ("robot", "tracker") for one in present(self._session, kind)]
+        leaving = {epoch for epoch in there if self._admission.knows(epoch)}
         deadline_s = time.monotonic() + LAST_WORDS_S
         self._hear_accounts()
         while leaving - self._gone and time.monotonic() < deadline_s:
@@ -118,9 +124,10 @@ class LiveHub:
         return {sender: last for sender, last in (self._accounts | own).items() if _is_logged(sender[0])}
 
     def _hear_accounts(self) -> None:
+        self._attendance.look()
         for sample in self._closing.poll():
             header = Header.unpack(sample.attachment)
-            if header is not None:
+            if header is not None and self._admission.knows(header.epoch):
                 self._gone.add(header.epoch)
                 for key, last in unpack_account(sample.payload).items():
                     self._accounts[key, header.epoch] = last
@@ -131,9 +138,11 @@ class LiveHub:
         if level != pb.Event.INFO:
             self._warn(text)
 
-    def _arrived(self) -> Iterator[Item]:
-        for inbox in self._inboxes:
-            yield from self._items(inbox.poll())
+    def _received(self) -> list[Item]:
+        """A sender's presence arrives before its first message, and so is looked at after the messages."""
+        items = [item for inbox in self._inboxes for item in self._items(inbox.poll())]
+        self._attendance.look()
+        return [item for item in items if self._admission.accepts(item)]
 
     def _items(self, samples: Iterable[WireSample]) -> Iterator[Item]:
         for sample in samples:

@@ -25,6 +25,7 @@ from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import REAL_LINKS, Experiment
 from swarm.errors import UserError
 from swarm.parallel import available_cores
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import patient
 from swarm.runtime.zenoh_session import Session, SessionSettings
@@ -40,11 +41,15 @@ Warn = Callable[[str], None]
 
 @dataclass(frozen=True)
 class TrialPlan:
-    """Which trial is to be played: its number, the experiment's file, where its processes print to."""
+    """Which trial is to be played: its identity, the experiment's file, where its processes print to."""
 
-    trial: int
+    identity: RunIdentity
     file: Path
     output: Path
+
+    @property
+    def trial(self) -> int:
+        return self.identity.trial
 
 
 @dataclass(frozen=True)
@@ -83,12 +88,13 @@ def simulated(
         TemporaryDirectory(prefix="robots-") as sockets,
     ):
         emulated = emulated_addresses(experiment, Path(sockets)) if emulate else {}
-        specs = run_table(experiment, plan.file, endpoint, plan.trial, pace, plan.output, emulated)
-        claim(session, _presence())
+        trial = plan.identity.trial
+        specs = run_table(experiment, plan.file, endpoint, trial, pace, plan.output, emulated)
+        claim(session, _presence(plan.identity))
         with Supervisor(specs, plan.output, spread(len(specs), cores)) as supervisor:
             core_of = {os.getpid(): cores[0], **supervisor.core_of}
             probe = PlacementProbe(partial(place, core_of, cores))
-            hub, flush_every = _hub(experiment, session, pace, supervisor, warn, probe)
+            hub, flush_every = _hub(experiment, plan.identity, session, pace, supervisor, warn, probe)
             reporter = Reporter(hub)
             yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every, warn)
 
@@ -113,6 +119,7 @@ def _hub_settings(endpoint: str, pace: Pace) -> SessionSettings:
 
 def _hub(
     experiment: Experiment,
+    identity: RunIdentity,
     session: Session,
     pace: Pace,
     supervisor: Supervisor,
@@ -122,7 +129,7 @@ def _hub(
     """The hub of a pace, and how many of its batches come between two flushes."""
     if not pace.lockstep:
         clock = scaled_clock(pace.started_ns, pace.speed)
-        live = LiveHub(session, clock, experiment, supervisor.check, warn)
+        live = LiveHub(session, clock, experiment, identity, supervisor.check, warn)
         return live, _live_flush(experiment, pace.speed)
     names, ticks = list(supervisor.pids), experiment.ticks_per_exchange
     tick_s = experiment.simulation.tick_s
@@ -150,18 +157,18 @@ def laboratory(
     experiment: Experiment,
     session: Session,
     warn: Warn,
-    plan: TrialPlan,  # noqa: ARG001
+    plan: TrialPlan,
 ) -> Iterator[TrialEnvironment]:
     """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
-    claim(session, _presence())
-    hub = LiveHub(session, unix_clock(), experiment, _nothing_to_check, warn)
+    claim(session, _presence(plan.identity))
+    hub = LiveHub(session, unix_clock(), experiment, plan.identity, _nothing_to_check, warn)
     reporter = Reporter(hub)
     carrier = Operator(reporter, warn)
     yield TrialEnvironment(hub, reporter, carrier, _live_flush(experiment, 1.0), warn, waits_for_people=True)
 
 
-def _presence() -> Presence:
-    return Presence("server", "server", socket.gethostname(), time.time_ns())
+def _presence(identity: RunIdentity) -> Presence:
+    return Presence("server", "server", socket.gethostname(), time.time_ns(), str(identity.fingerprint))
 
 
 def _live_flush(experiment: Experiment, speed: float) -> int:

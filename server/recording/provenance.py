@@ -8,22 +8,31 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from swarm.config.experiment import Experiment
+from swarm.runtime.identity import RunIdentity
 
 PACKAGES = ("swarm-runtime", "eclipse-zenoh", "numpy", "protobuf", "mcap")
 
 
 def metadata(
-    experiment: Experiment, file: Path, trial: int, versions: dict[str, str]
+    experiment: Experiment, file: Path, identity: RunIdentity, versions: dict[str, str], part: int = 1
 ) -> dict[str, dict[str, str]]:
-    """The metadata records of a trial's log; `versions` are those at the run's beginning."""
+    """The metadata records of a trial's log; `versions` are those at the run's beginning.
+
+    A run that others can join also says its id and fingerprint, and the log of a server that went on with a
+    trial which of the trial's logs it is.
+    """
     run = experiment.run
+    joinable = {"id": identity.run_id, "identity": str(identity.fingerprint)} if identity.run_id else {}
+    later = {"part": str(part)} if part > 1 else {}
     return {
         "experiment": {"toml": file.read_text(encoding="utf-8")},
         "run": {
             "name": run.name,
             "seed": str(run.seed),
             "moves": str(run.moves),
-            "trial": str(trial),
+            "trial": str(identity.trial),
+            **joinable,
+            **later,
         },
         "robots": {robot.id: f"{robot.role.value} {robot.group}" for robot in experiment.robot},
         "versions": versions,

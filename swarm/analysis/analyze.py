@@ -61,7 +61,7 @@ def analyze(request: Request, show: Callable[[int], object] = lambda _: None) ->
     best_paths = pl.read_parquet(reading.tables["best_paths"], glob=False)
     curves = run_curves(best_paths, inputs.shortest_moves)
     notes = [*inputs.notes, *_reading_notes(inputs, reading), *curves.notes]
-    copying = read_copying(reading.tables, {log.name: log.cell_m for log in inputs.logs})
+    copying = read_copying(reading.tables, {log.trial_log: log.cell_m for log in inputs.logs})
     summary = Summary(_title(inputs), reading, curves, compare_all(curves), request.threshold, notes, copying)
     files = _write(directory, curves, summary)
     analysis = Analysis(summary, directory.path, files | reading.tables)
@@ -128,5 +128,5 @@ def _damage_notes(log: LogContent) -> list[str]:
 
 def _silent_notes(log: LogIdentity, reported: set[tuple[str, str]]) -> list[str]:
     """Learners that made too few moves for a single point of their curve."""
-    silent = sorted(robot for robot in log.learners if (log.name, robot) not in reported)
+    silent = sorted(robot for robot in log.learners if (log.trial_log, robot) not in reported)
     return [f"{log.name}: {robot} reported no best path and is left out" for robot in silent]

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from swarm.errors import UserError
 from swarm.logs.identity import LogIdentity, identify
+from swarm.logs.trial_logs import joined, logs_in
 
-LOG_NAME = re.compile(r"(trial-\d+)\.mcap", re.ASCII)
-RECOVERED_NAME = re.compile(r"(trial-\d+)\.recovered\.mcap", re.ASCII)
 MANIFEST = "manifest.json"
 
 
@@ -32,7 +30,7 @@ class Inputs:
 def find_inputs(runs: Sequence[Path]) -> Inputs:
     """The logs of run directories and log files; UserError if they cannot be analyzed together."""
     notes: list[str] = []
-    logs = [identity for run in runs for identity in _logs_of(run, notes)]
+    logs = joined(identity for run in runs for identity in _logs_of(run, notes))
     _refuse_repetitions(logs)
     commits = sorted({log.commit for log in logs})
     if len(commits) > 1:
@@ -53,27 +51,10 @@ def default_out(runs: Sequence[Path]) -> Path:
 def _logs_of(run: Path, notes: list[str]) -> list[LogIdentity]:
     if not run.is_dir():
         return [identify(run)]
-    paths = _logs_in(run, notes)
-    if not paths:
-        raise UserError(f"{run}: holds no log (trial-NNN.mcap); is it a run directory?")
-    logs = [identify(path) for path in paths]
+    logs = logs_in(run, notes)
     _refuse_mixture(run, logs)
-    notes.extend(_missing(run, {path.name for path in paths}))
+    notes.extend(_missing(run, {log.path.name for log in logs}))
     return logs
-
-
-def _logs_in(run: Path, notes: list[str]) -> list[Path]:
-    """One log a trial: a recovered one only where its original is gone, since all of that is read as well."""
-    try:
-        names = sorted(entry.name for entry in run.iterdir())
-    except OSError as error:
-        raise UserError(f"{run}: cannot be read ({error.strerror})") from error
-    logs = {match[1]: run / match[0] for match in map(LOG_NAME.fullmatch, names) if match}
-    for match in filter(None, map(RECOVERED_NAME.fullmatch, names)):
-        original = logs.setdefault(match[1], run / match[0])
-        if original.name != match[0]:
-            notes.append(f"{run}: {match[0]} is left out, {original.name} itself is read")
-    return [logs[trial] for trial in sorted(logs)]
 
 
 def _refuse_mixture(run: Path, logs: list[LogIdentity]) -> None:
@@ -116,7 +97,7 @@ def _refuse_repetitions(logs: list[LogIdentity]) -> None:
     for log in logs:
         for condition in sorted({log.conditions[robot] for robot in log.learners}):
             before = seen.setdefault((condition, *log.replicate), log)
-            if before is not log:
+            if before.trial_log != log.trial_log or (before is not log and before.path == log.path):
                 same = "is given twice" if before.digest == log.digest else "is in both"
                 raise UserError(
                     f"{before.path} and {log.path}: trial {log.trial} of seed {log.seed} of {condition!r} "

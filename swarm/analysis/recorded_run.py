@@ -108,4 +108,4 @@ class RecordedRun:
 
     @cached_property
     def _copying(self) -> Copying:
-        return read_copying(self._learning.tables, {log.name: log.cell_m for log in self.logs})
+        return read_copying(self._learning.tables, {log.trial_log: log.cell_m for log in self.logs})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,26 +12,47 @@ from swarm.errors import RunFailedError
 from swarm.extras import require_extra
 from swarm.files import printable
 
+if TYPE_CHECKING:
+    from swarm.logs.check import LogCheck
+
 
 def check_command(
-    log: Annotated[Path, typer.Argument(help="A .mcap file.")],
+    log: Annotated[Path, typer.Argument(help="A .mcap file, or a run directory.")],
     json: Annotated[bool, typer.Option("--json", help="Print the findings as one JSON object.")] = False,
 ) -> None:
     """Say whether a log is complete and sound: its index, checksums, gaps, duplicates, every message.
 
+    Of a run directory every trial; if a server went on with a trial, with what is missing between its logs.
     Exit code 0: it is. 1: it is not, with the reasons. 2: it is no log of a run.
     """
     require_extra("lab", "mcap", "polars")
-    from swarm.logs.check import check_log
+    from swarm.logs.check import check_log, check_run
 
-    found = check_log(log)
+    checks = check_run(log) if log.is_dir() else [check_log(log)]
     if json:
-        print_json(found.as_json())
-    else:
-        for remark in found.remarks:
-            typer.echo(f"note: {remark}")
-    if found.faults:
-        more = f"; and {len(found.faults) - 3} more" if len(found.faults) > 3 else ""
-        raise RunFailedError(f"{printable(log)} is not sound: {'; '.join(found.faults[:3])}{more}")
+        print_json(_as_json(log, [found.as_json() for found in checks]))
+    unsound = [_told(found.path, found.faults) for found in checks if found.faults]
     if not json:
-        typer.echo(f"{printable(log)}: complete and sound, {found.messages:,} messages")
+        for found in checks:
+            _tell(found)
+    if unsound:
+        raise RunFailedError("; ".join(unsound))
+
+
+def _as_json(log: Path, checks: list[dict[str, Any]]) -> dict[str, Any]:
+    """Of a log what was found in it; of a run directory that of every trial."""
+    if not log.is_dir():
+        return checks[0]
+    return {"run": printable(log), "sound": all(found["sound"] for found in checks), "trials": checks}
+
+
+def _told(path: Path, faults: list[str]) -> str:
+    more = f"; and {len(faults) - 3} more" if len(faults) > 3 else ""
+    return f"{printable(path)} is not sound: {'; '.join(faults[:3])}{more}"
+
+
+def _tell(found: LogCheck) -> None:
+    for remark in found.remarks:
+        typer.echo(f"note: {remark}")
+    if found.sound:
+        typer.echo(f"{printable(found.path)}: complete and sound, {found.messages:,} messages")

@@ -45,7 +45,7 @@ def measured_in(runs: list[Path]) -> dict[str, list[float]]:
     from swarm.surrogate.durations import Step, measured
 
     logs = find_inputs(runs).logs
-    goals = {log.name: log.grid.goal for log in logs}
+    goals = {log.trial_log: log.grid.goal for log in logs}
     with tempfile.TemporaryDirectory() as folder:
         tables = read_logs(logs, Path(folder), False, lambda _: None).tables
         moves = pl.read_parquet(tables["moves"], glob=False).sort("log", "publish_t_ns", maintain_order=True)

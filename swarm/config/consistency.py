@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from swarm.config.limits import BEYOND_CORNER_M
 from swarm.config.toml_files import ConfigFile
 from swarm.errors import nearest
-from swarm.messages.topics import is_id
+from swarm.messages.topics import NO_ROBOT, is_id
 
 if TYPE_CHECKING:
     from swarm.config.experiment import Experiment, RobotSettings
@@ -30,6 +30,9 @@ def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file
     for name, value in (("id", robot.id), ("condition", robot.group)):
         if not is_id(value):
             raise file.error((*where, name), f"{name!r} is {value!r}; {_ID_RULE}")
+    if robot.id in NO_ROBOT:
+        names = ", ".join(sorted(NO_ROBOT))
+        raise file.error((*where, "id"), f"'id' is {robot.id!r}, as in keys that name no robot ({names})")
     if robot.paths and robot not in experiment.learners:
         raise file.error((*where, "paths"), f"{robot.id!r} is no learner: it cannot be given paths")
     if len(robot.paths) > experiment.learning.capacity:

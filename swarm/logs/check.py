@@ -7,7 +7,7 @@ a log cannot show that, it is not complete.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,11 @@ import polars as pl
 
 from swarm.files import printable
 from swarm.logs.completeness import HealthTable, health_totals
-from swarm.logs.ending import COMPLETE
+from swarm.logs.ending import COMPLETE, Ending
 from swarm.logs.identity import LogIdentity, identity_of
 from swarm.logs.reader import LogReader, Part
 from swarm.logs.tables import is_tabled, rows
+from swarm.logs.trial_logs import as_one, by_trial, logs_in
 from swarm.messages import topics
 from swarm.messages.validation import MAX_T_NS
 
@@ -64,9 +65,8 @@ class LogCheck:
 
 @dataclass
 class _Contents:
-    """What the messages themselves tell, part by part."""
+    """What the messages of a trial's logs tell themselves, part by part."""
 
-    identity: LogIdentity
     health: HealthTable
     times: dict[str, str] = field(default_factory=dict)
     """key -> what is wrong with its times."""
@@ -74,14 +74,14 @@ class _Contents:
     """key -> the numbers of the moves, which go on across restarts."""
     _latest_t_ns: dict[str, int] = field(default_factory=dict)
 
-    def add(self, part: Part) -> None:
+    def add(self, part: Part, log: LogIdentity) -> None:
         key, rejected = part.channel.key, 0
         if part.payloads:
-            found = rows(part, self.identity)
+            found = rows(part, log)
             rejected = len(found.rejected)
             if part.channel.topic is topics.MOVE:
                 self.moves.setdefault(key, set()).update(found.tables[0].frame["number"])
-        self.health.add(part, rejected)
+        self.health.add(as_one(part, log), rejected)
         self._add_times(part)
 
     def _add_times(self, part: Part) -> None:
@@ -110,26 +110,51 @@ def check_log(path: Path) -> LogCheck:
     """Read every byte and decode every message; LogError for what is no log of a run."""
     about = LogReader(path)
     about.read_metadata()
-    identity = identity_of(about)
-    reader, contents = LogReader(path, is_tabled), _Contents(identity, HealthTable(identity))
-    for part in reader.parts():
-        contents.add(part)
+    return _checked([identity_of(about)])
+
+
+def check_run(run: Path) -> list[LogCheck]:
+    """The trials of a run directory, each with all of its logs: what is missing between them is missing."""
+    return [_checked(parts) for parts in by_trial(logs_in(run, []))]
+
+
+def _checked(parts: list[LogIdentity]) -> LogCheck:
+    contents = _Contents(HealthTable(parts[0]))
+    readers = [_read(part, contents) for part in parts]
     found = contents.health.frame()
-    lacking = [text for text in (identity.ending.fault,) if text]
-    missing = dict(found.group_by("key").agg(pl.col("missing").sum()).iter_rows())
-    lacking += [*_missing(found), *contents.swallowed_moves(missing)]
-    if identity.ending.state == COMPLETE:
-        lacking += _unaccounted(found)
-    damage = [*_damage(reader), *contents.damage(), *_bad_messages(found)]
-    indexed = reader.recorded_messages is not None
-    return LogCheck(path, reader.messages, indexed, damage, lacking, _remarks(found))
+    damage = [fault for reader in readers for fault in _damage(reader, named=len(parts) > 1)]
+    return LogCheck(
+        parts[0].path,
+        sum(reader.messages for reader in readers),
+        all(reader.recorded_messages is not None for reader in readers),
+        [*damage, *contents.damage(), *_bad_messages(found)],
+        [*_lacking(parts[0].ending, found, contents)],
+        _remarks(found),
+    )
 
 
-def _damage(reader: LogReader) -> list[str]:
+def _read(identity: LogIdentity, contents: _Contents) -> LogReader:
+    reader = LogReader(identity.path, is_tabled)
+    for part in reader.parts():
+        contents.add(part, identity)
+    return reader
+
+
+def _lacking(ending: Ending, health: pl.DataFrame, contents: _Contents) -> Iterator[str]:
+    if ending.fault:
+        yield ending.fault
+    yield from _missing(health)
+    yield from contents.swallowed_moves(dict(health.group_by("key").agg(pl.col("missing").sum()).iter_rows()))
+    if ending.state == COMPLETE:
+        yield from _unaccounted(health)
+
+
+def _damage(reader: LogReader, *, named: bool) -> list[str]:
+    """Why a log is not sound by its own bytes; `named`: with the file's name."""
     found = [*map(str, reader.damage), *reader.unverified]
     if reader.recorded_messages is None and not found:
         found.append("the log has no index")
-    return found
+    return [f"{printable(Path(reader.path.name))}: {fault}" for fault in found] if named else found
 
 
 def _is_event() -> pl.Expr:
@@ -140,7 +165,7 @@ def _missing(health: pl.DataFrame) -> list[str]:
     return _counts(health.filter(_is_event()), "missing", "messages missing")
 
 
-def _unaccounted(health: pl.DataFrame) -> Iterable[str]:
+def _unaccounted(health: pl.DataFrame) -> Iterator[str]:
     """Senders of learning events that do not say how many they sent."""
     silent = health.filter(_is_event() & pl.col("sent").is_null()).unique(["robot", "epoch"])
     for robot, starts in silent.group_by("robot").len().sort("robot").iter_rows():

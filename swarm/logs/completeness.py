@@ -46,7 +46,7 @@ HEALTH_SCHEMA: dict[str, Any] = {
 
 @dataclass
 class HealthTable:
-    """Fills from the parts of one log; needs no payload."""
+    """Fills from the parts of a trial's log, or of all its logs; needs no payload."""
 
     identity: LogIdentity
     _sequences: dict[LogChannel, list[npt.NDArray[np.uint32]]] = field(default_factory=dict)
@@ -90,7 +90,7 @@ class HealthTable:
         sent = self._sent.get((channel.key, channel.epoch))
         none = [np.empty(0, dtype=np.uint32)]
         return {
-            "log": self.identity.name,
+            "log": self.identity.trial_log,
             "seed": self.identity.seed,
             "trial": self.identity.trial,
             "key": channel.key,
@@ -140,7 +140,7 @@ def log_state(health: pl.DataFrame, identity: LogIdentity, damaged: bool) -> str
         return "recovered"
     if ending.state != COMPLETE:
         return ending.state or "unfinished"
-    events = health.filter((pl.col("log") == identity.name) & (pl.col("delivery") == "every"))
+    events = health.filter((pl.col("log") == identity.trial_log) & (pl.col("delivery") == "every"))
     accounted = events["missing"].sum() == 0 and events["sent"].null_count() == 0
     return "complete" if accounted else "incomplete"
 

@@ -8,8 +8,8 @@ without them was cut short, or its server was killed. `recovered` is in a log th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 END, SENT, RECOVERED = "end", "sent", "recovered"
 COMPLETE = "complete"
@@ -39,6 +39,15 @@ class Ending:
         if not self.state:
             return "how the trial ended is not recorded: its server was killed, or the log is cut short"
         return "" if self.state == COMPLETE else f"the trial was {self.state}: {self.reason}"
+
+
+def last_of(endings: Sequence[Ending]) -> Ending:
+    """How a trial ended of which several servers recorded a log each: as the last says, with all accounts."""
+    sent: dict[Sender, int] = {}
+    for ending in endings:
+        sent |= {sender: max(last, sent.get(sender, 0)) for sender, last in ending.sent.items()}
+    lost = "; ".join(dict.fromkeys(ending.lost for ending in endings if ending.lost))
+    return replace(endings[-1], sent=sent, lost=lost)
 
 
 def ending_of(metadata: Mapping[str, Mapping[str, str]]) -> Ending:

@@ -40,11 +40,23 @@ class LogIdentity:
     grid: Grid
     """The cells of each robot's compartment."""
     ending: Ending = field(default_factory=Ending)
+    """Of the trial, once its logs were put together."""
+    run_id: str = ""
+    """Of a run that others could join; empty for a simulation's lockstep."""
+    part: int = 1
+    """Which of the trial's logs this is: every server that went on with the trial wrote one."""
+    first_part: Path | None = None
+    """The log that this one goes on from, once the logs of a trial were put together."""
 
     @property
     def name(self) -> str:
-        """The path as tables, reports and JSON have it."""
+        """The path as reports and JSON have it."""
         return printable(self.path)
+
+    @property
+    def trial_log(self) -> str:
+        """What tables call the trial: the path of its first log."""
+        return printable(self.first_part or self.path)
 
     def condition(self, robot: str) -> str:
         """ "unknown" for a robot that the experiment does not name; empty for what is no robot."""
@@ -92,6 +104,8 @@ def identity_of(reader: LogReader) -> LogIdentity:
             cell_m=arena.cell_m,
             grid=Grid(arena.columns, arena.rows),
             ending=ending_of(metadata),
+            run_id=run.get("id", ""),
+            part=_count(run.get("part", "1")),
         )
     except (KeyError, ValueError) as error:
         reason = "does not say which run and trial it holds: was it recorded by swarm-server?"

@@ -26,6 +26,7 @@ from swarm.logs.tables import (
     rows,
     table_names,
 )
+from swarm.logs.trial_logs import as_one
 from swarm.logs.units import parquet_metadata
 
 ROWS_IN_MEMORY = 500_000
@@ -117,19 +118,19 @@ def read_logs(
     `show` is told now and then how many more messages have been read.
     """
     files = TableFiles(folder, table_names(TABLE_OF if sampled else LEARNING | WATCHING))
-    healths, contents = [], []
+    healths: dict[str, HealthTable] = {}
+    contents = []
     try:
         for identity in logs:
-            health, content = _read_log(identity, files, sampled, show)
-            healths.append(health)
-            contents.append(content)
+            health = healths.setdefault(identity.trial_log, HealthTable(identity))
+            contents.append(_read_log(identity, files, health, sampled, show))
         tables = _without_empty(files.finish(), table_names(WATCHING))
     finally:
         files.discard()
-    health = pl.concat(healths)
-    together = {"health": health} | _episodes(tables)
+    health_frame = pl.concat([health.frame() for health in healths.values()])
+    together = {"health": health_frame} | _episodes(tables)
     written = {name: _write(frame, folder / f"{name}.parquet") for name, frame in together.items()}
-    return Reading(tables | written, health, contents)
+    return Reading(tables | written, health_frame, contents)
 
 
 def _episodes(tables: dict[str, Path]) -> dict[str, pl.DataFrame]:
@@ -159,10 +160,14 @@ def _without_empty(tables: dict[str, Path], names: Sequence[str]) -> dict[str, P
 
 
 def _read_log(
-    identity: LogIdentity, files: TableFiles, sampled: bool, show: Callable[[int], object]
-) -> tuple[pl.DataFrame, LogContent]:
+    identity: LogIdentity,
+    files: TableFiles,
+    health: HealthTable,
+    sampled: bool,
+    show: Callable[[int], object],
+) -> LogContent:
     wanted = is_tabled if sampled else is_learning
-    reader, health = LogReader(identity.path, wanted), HealthTable(identity)
+    reader = LogReader(identity.path, wanted)
     rejected: list[Rejected] = []
     for part in reader.parts():
         bad = 0
@@ -172,6 +177,6 @@ def _read_log(
                 files.add(table)
             bad = len(found.rejected)
             rejected.extend(islice(found.rejected, max(0, REJECTED_SHOWN - len(rejected))))
-        health.add(part, bad)
+        health.add(as_one(part, identity), bad)
         show(len(part.sequence))
-    return health.frame(), LogContent(identity, reader.messages, reader.damage, rejected)
+    return LogContent(identity, reader.messages, reader.damage, rejected)

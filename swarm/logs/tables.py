@@ -148,7 +148,7 @@ def _origin(part: Part, identity: LogIdentity, good: slice | list[int]) -> dict[
         )
 
     return {
-        "log": constant(identity.name),
+        "log": constant(identity.trial_log),
         "seed": constant(identity.seed),
         "trial": constant(identity.trial),
         "condition": constant(identity.condition(publisher)),

@@ -21,7 +21,7 @@ _UNITS = {"t_s": "s of the run's time"} | dict.fromkeys(
 )
 
 MEANINGS = {
-    "log": "the file",
+    "log": "the file; the first, if several servers recorded the trial",
     "seed": "of the run",
     "trial": "of the run, from 0",
     "condition": "the robot's, as the experiment file names it; empty for what is no robot",
@@ -66,6 +66,8 @@ MEANINGS = {
     "captured_t_ns": "when it was seen",
     "phase": "of the run, or of a visit",
     "experiment": "the run's name",
+    "run_id": "new with every run; empty in a simulation's lockstep",
+    "identity": "fingerprint of experiment, seed, trial and message types; empty in a simulation's lockstep",
     "activity": "what the robot is at",
     "tracks": "journeys from start to goal, so far",
     "pose_age_s": "since the newest pose was captured",
@@ -137,6 +139,7 @@ MEANINGS = {
 }
 """Of a column of this name in any table."""
 _IN_TABLE = {
+    ("health", "log"): "the file",
     ("replays", "moves"): "how many moves were replayed",
     ("statuses", "moves"): "how many moves the robot has made",
     ("journeys", "moves"): "how many moves it took",

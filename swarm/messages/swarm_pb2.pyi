@@ -160,19 +160,27 @@ class RunState(_message.Message):
     PHASE_FIELD_NUMBER: _builtins.int
     TRIAL_FIELD_NUMBER: _builtins.int
     EXPERIMENT_FIELD_NUMBER: _builtins.int
+    RUN_ID_FIELD_NUMBER: _builtins.int
+    IDENTITY_FIELD_NUMBER: _builtins.int
     phase: Global___RunState.Phase.ValueType
     trial: _builtins.int
     experiment: _builtins.str
+    run_id: _builtins.str
+    """new with every run; unset in a lockstep, which nobody can join"""
+    identity: _builtins.str
+    """fingerprint of experiment, seed, trial and message types; unset there too"""
     def __init__(
         self,
         *,
         phase: Global___RunState.Phase.ValueType = ...,
         trial: _builtins.int = ...,
         experiment: _builtins.str = ...,
+        run_id: _builtins.str = ...,
+        identity: _builtins.str = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["experiment", b"experiment", "phase", b"phase", "trial", b"trial"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["experiment", b"experiment", "identity", b"identity", "phase", b"phase", "run_id", b"run_id", "trial", b"trial"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from swarm.messages.topics import ACCOUNT, ALIVE, LOCKSTEP_DONE, LOCKSTEP_TICK, TABLE, Delivery, Topic
+from swarm.messages.topics import (
+    ACCOUNT,
+    ALIVE,
+    LOCKSTEP_DONE,
+    LOCKSTEP_TICK,
+    RUN_IDENTITY,
+    TABLE,
+    Delivery,
+    Topic,
+)
 
 _HEAD = """# Everything on the wire
 
@@ -51,8 +60,9 @@ def _mark(yes: bool) -> str:
 def _beside_the_table() -> str:
     return (
         f"Beside the table: `{ALIVE}` are presence tokens (kind is robot, tracker or server),\n"
-        f"`{ACCOUNT}` is the closing account of a process that leaves: how many messages of each key it has\n"
-        f"sent. Lockstep simulation uses `{LOCKSTEP_TICK}` and `{LOCKSTEP_DONE}`. None is logged.\n"
+        f"`{ACCOUNT}` is the closing account of a process that leaves: how many messages of each key it\n"
+        f"has sent. Lockstep simulation uses `{LOCKSTEP_TICK}` and `{LOCKSTEP_DONE}`. The server answers a\n"
+        f"query for `{RUN_IDENTITY}` with the run's id and all settings. None of these is logged.\n"
     )
 
 

@@ -104,8 +104,12 @@ LOCKSTEP_TICK = "lockstep/tick/{process}"
 LOCKSTEP_DONE = "lockstep/done"
 ACCOUNT = "account/{name}"
 """What a process says as it leaves: how many messages of each key it has sent."""
-ALIVE = "alive/{kind}/{name}/{host}/{epoch}"
-"""Presence (liveliness tokens): kind is robot, tracker, server or process."""
+ALIVE = "alive/{kind}/{name}/{host}/{epoch}/{identity}"
+"""Presence (liveliness tokens): kind is robot, tracker, server or process; identity is a fingerprint."""
+NO_ROBOT = {topic.pattern.split("/")[0] for topic in TABLE if "{robot}" not in topic.pattern} | {"view"}
+"""What the tables of a log call those who are no robot: no robot may be called so. `view` is the server's."""
+RUN_IDENTITY = "run/identity"
+"""Asked, not published: the server answers with the run's id and every setting."""
 
 
 def is_id(name: str) -> bool:

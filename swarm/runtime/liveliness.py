@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 
 from swarm.errors import UserError
@@ -11,7 +12,11 @@ from swarm.messages.topics import ALIVE
 from swarm.runtime.zenoh_session import PresenceWatch, Session
 
 ALIVE_SERVER = "alive/server/**"
-ALIVE_ROBOTS_AND_TRACKERS = "alive/*/*/*/*"
+ALIVE_ROBOTS_AND_TRACKERS = "alive/*/*/*/*/*"
+
+
+NO_IDENTITY = "-"
+"""Of a tool that takes part in no run."""
 
 
 @dataclass(frozen=True)
@@ -22,24 +27,35 @@ class Presence:
     name: str
     host: str
     epoch: int
+    identity: str = NO_IDENTITY
+    """The fingerprint of the trial that it would play."""
 
     @property
     def key(self) -> str:
         host = re.sub(r"[^A-Za-z0-9_.-]", "-", self.host)
-        return ALIVE.format(kind=self.kind, name=self.name, host=host, epoch=self.epoch)
+        return ALIVE.format(
+            kind=self.kind, name=self.name, host=host, epoch=self.epoch, identity=self.identity
+        )
 
     @classmethod
     def parse(cls, key: str) -> Presence:
-        """The presence that a token's key tells of."""
-        _, kind, name, host, epoch = key.split("/")
-        return cls(kind, name, host, int(epoch))
+        """The presence that a token's key tells of; ValueError if it is no such key."""
+        _, kind, name, host, epoch, identity = key.split("/")
+        return cls(kind, name, host, int(epoch), identity)
+
+
+def parsed(keys: Iterable[str]) -> list[Presence]:
+    """The presences that keys tell of; tokens of another shape tell nothing."""
+    found = []
+    for key in keys:
+        with suppress(ValueError):
+            found.append(Presence.parse(key))
+    return found
 
 
 def present(session: Session, kind: str, name: str = "*") -> list[Presence]:
     """Everyone of a kind, or with a name, who is alive now."""
-    return [
-        Presence.parse(key) for key in session.alive(ALIVE.format(kind=kind, name=name, host="*", epoch="*"))
-    ]
+    return parsed(session.alive(ALIVE.format(kind=kind, name=name, host="*", epoch="*", identity="*")))
 
 
 def claim(session: Session, presence: Presence) -> None:
@@ -75,5 +91,10 @@ def _refuse_if_taken(presence: Presence, others: list[Presence]) -> None:
     for other in others:
         raise UserError(
             f"{presence.kind} {presence.name!r} is already alive on host {other.host!r}; this one on host "
-            f"{presence.host!r} does not start: stop the other, or give this one an id of its own"
+            f"{presence.host!r} does not start{_same_host(presence, other)}: stop the other, "
+            "or give this one an id of its own"
         )
+
+
+def _same_host(presence: Presence, other: Presence) -> str:
+    return " (started twice there, or a copied card?)" if presence.host == other.host else ""

@@ -49,6 +49,8 @@ class LockstepNode:
     large or asked for again and greetings, is left to the main thread, as is what a step raises.
     """
 
+    run_id = ""
+
     def __init__(self, session: Session, process: str) -> None:
         self._session = session
         self._process = process

@@ -8,6 +8,7 @@ from typing import Any, Protocol, TypeVar
 from google.protobuf.message import Message
 
 from swarm.clock import WallClock
+from swarm.errors import RunFailedError
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header
@@ -29,6 +30,8 @@ class Node(Protocol):
 
     keys_received: set[str]
     """Every key of which this process received a message."""
+    run_id: str
+    """The run that this process takes part in; empty in a lockstep."""
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
         """A subscription of one robot's messages, or of all robots'."""
@@ -103,8 +106,10 @@ class LiveNode:
         clock: WallClock,
         period_s: float,
         epoch: int,
+        run_id: str = "",
         say: Callable[[str], None] = lambda text: None,  # noqa: ARG005
     ) -> None:
+        self.run_id = run_id
         self._session = session
         self._say = say
         self._server = ServerWatch(session.presence_watch(ALIVE_SERVER), say)
@@ -138,10 +143,20 @@ class LiveNode:
         for t_ns in self._clock.ticks(self._period_s):
             self._server.look()
             self._take_in()
+            states = [state.message for state in self._run_states.take()]
+            for state in states:
+                self._refuse_another_run(state)
             step(t_ns)
-            if any(state.message.phase == pb.RunState.ENDED for state in self._run_states.take()):
+            if any(state.phase == pb.RunState.ENDED for state in states):
                 self._say("finished: the run has ended")
                 return
+
+    def _refuse_another_run(self, state: pb.RunState) -> None:
+        if self.run_id and state.run_id != self.run_id:
+            raise RunFailedError(
+                f"the server has begun another run ({state.run_id or 'without an id'}), and this process "
+                f"takes part in run {self.run_id}: start it again to take part in the new one"
+            )
 
     def _take_in(self) -> None:
         for inbox, subscription in self._inboxes:

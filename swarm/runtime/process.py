@@ -23,7 +23,9 @@ from swarm.clock import scaled_clock, unix_clock
 from swarm.config import arguments as values
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
-from swarm.runtime.liveliness import Presence, claim
+from swarm.runtime.handshake import agreed_run
+from swarm.runtime.identity import RunIdentity
+from swarm.runtime.liveliness import NO_IDENTITY, Presence, claim
 from swarm.runtime.lockstep import EPOCH, LockstepNode, patient
 from swarm.runtime.node import LiveNode, Node
 from swarm.runtime.zenoh_session import Session, SessionSettings
@@ -91,23 +93,31 @@ def load_experiment(arguments: argparse.Namespace) -> Experiment:
 
 
 @contextmanager
-def joined(arguments: argparse.Namespace, kind: str, names: list[str], period_s: float) -> Iterator[Node]:
-    """The node of a process that is present under its names for as long as the block runs."""
+def joined(
+    arguments: argparse.Namespace, kind: str, names: list[str], period_s: float, identity: RunIdentity | None
+) -> Iterator[Node]:
+    """The node of a process that is present under its names for as long as the block runs.
+
+    UserError if the run on the server is not the one that `identity` tells of; None is for a tool that takes
+    part in no run, and needs none.
+    """
     epoch = EPOCH if arguments.lockstep else time.time_ns()
     settings = SessionSettings(arguments.connect, config=arguments.zenoh_config)
     if arguments.lockstep:
         settings = patient(settings)
     say = _say_nothing if arguments.supervised else _say
+    shown = str(identity.fingerprint) if identity else NO_IDENTITY
     with Session(settings, partial(say, f"waiting for the server at {settings.endpoint}")) as session:
-        say(f"connected to the server at {settings.endpoint}")
         for name in names:
-            claim(session, Presence(kind, name, socket.gethostname(), epoch))
+            claim(session, Presence(kind, name, socket.gethostname(), epoch, shown))
         if arguments.lockstep:
             yield LockstepNode(session, arguments.process)
         else:
+            run_id = agreed_run(session, identity, unix_clock()) if identity else ""
+            say(f"connected to the server at {settings.endpoint}")
             simulated = arguments.started_ns
             clock = scaled_clock(simulated, arguments.speed) if simulated else unix_clock()
-            node = LiveNode(session, clock, period_s, epoch, say)
+            node = LiveNode(session, clock, period_s, epoch, run_id, say)
             try:
                 yield node
             finally:

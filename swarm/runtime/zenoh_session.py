@@ -122,6 +122,7 @@ class Session:
         self._zenoh = zenoh
         self._tokens: list[zenoh.LivelinessToken] = []
         self._listening: list[zenoh.Subscriber[None]] = []
+        self._answering: list[zenoh.Queryable[None]] = []
         try:
             self._session = in_background(partial(_opened, settings), waiting)
         except zenoh.ZError as error:
@@ -184,6 +185,20 @@ class Session:
     def declare_alive(self, key: str) -> None:
         """Show presence under a key for as long as this session lives."""
         self._tokens.append(self._session.liveliness().declare_token(key))
+
+    def arrivals(self, key: str) -> Inbox:
+        """The presence keys that match a key expression, now and as they come; they come again as they go."""
+        channel: zenoh.handlers.FifoChannel[zenoh.Sample] = self._zenoh.handlers.FifoChannel(QUEUE_DEPTH)
+        return Inbox(self._session.liveliness().declare_subscriber(key, channel, history=True))
+
+    def answer(self, key: str, payload: bytes) -> None:
+        """Answer everyone who asks for a key with the same bytes, for as long as this session lives."""
+        self._answering.append(self._session.declare_queryable(key, lambda query: query.reply(key, payload)))
+
+    def ask(self, key: str, within_s: float) -> list[bytes]:
+        """What those answer who know the key."""
+        replies = self._session.get(key, target=self._zenoh.QueryTarget.ALL, timeout=within_s)
+        return [bytes(reply.ok.payload) for reply in replies if reply.ok is not None]
 
     def alive(self, key: str) -> list[str]:
         """The presence keys that match a key expression now."""

@@ -14,7 +14,8 @@ from robot_agent.checkpoint import Checkpoint
 from swarm.errors import UserError
 from tests.robot_agent.test_agent import Rig, of
 
-RUN = "run a"
+RUN = ("0123456789ab", "fingerprint")
+"""The run's id and identity."""
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +23,7 @@ def saved(tmp_path_factory: pytest.TempPathFactory) -> str:
     """The file of a robot that has made some moves."""
     directory = tmp_path_factory.mktemp("saved")
     rig = Rig(directory)
-    rig.agent.resume_from(Checkpoint(directory, "r0", RUN))
+    rig.agent.resume_from(Checkpoint(directory, "r0", *RUN))
     rig.run(60)
     return (directory / "r0.json").read_text()
 
@@ -30,7 +31,7 @@ def saved(tmp_path_factory: pytest.TempPathFactory) -> str:
 def resumed(directory: Path, text: str) -> Rig:
     (directory / "r0.json").write_text(text)
     rig = Rig(directory)
-    rig.agent.resume_from(Checkpoint(directory, "r0", RUN))
+    rig.agent.resume_from(Checkpoint(directory, "r0", *RUN))
     return rig
 
 
@@ -90,7 +91,7 @@ def test_a_deeply_nested_checkpoint_is_refused(tmp_path: Path) -> None:
 
 def test_a_robot_whose_disk_is_full_goes_on_and_says_so_once(tmp_path: Path) -> None:
     rig = Rig(tmp_path)
-    rig.agent.resume_from(Checkpoint(tmp_path, "r0", RUN))
+    rig.agent.resume_from(Checkpoint(tmp_path, "r0", *RUN))
     _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (100, hard))
     try:

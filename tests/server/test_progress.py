@@ -16,6 +16,7 @@ from server.progress import RunProgress, print_summary, times
 from server.reporter import Reporter
 from swarm.config.experiment import Experiment
 from swarm.messages.topics import Topic
+from swarm.runtime.identity import RunIdentity
 from tests.support.swarm_runs import experiment_text, write_experiment
 
 
@@ -30,7 +31,9 @@ class Run:
         console = Console(file=self._shown, force_terminal=terminal, width=120)
         self.progress = RunProgress(experiment, console, lambda: self.now_s)
         reporter = Reporter(self)
-        self.conductor = Conductor(experiment, 2, reporter, SimulatedCarrier(reporter))
+        self.conductor = Conductor(
+            experiment, RunIdentity.of(experiment, 2), reporter, SimulatedCarrier(reporter)
+        )
 
     def publish(self, topic: Topic[Any], message: Message, robot: str = "") -> None:
         """A conductor says something; nobody listens."""

@@ -18,6 +18,8 @@ M = TypeVar("M", bound=Message)
 class LocalNode:
     """Everything that was published, in order, and the feeds that hear it."""
 
+    run_id = ""
+
     def __init__(self) -> None:
         self.t_ns = 0
         self.published: list[tuple[str, Any]] = []

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 
 from swarm.config.experiment import REAL_LINKS, Experiment
+from swarm.messages.topics import RUN_IDENTITY
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 from tests.support.stop_errors import stop_errors
@@ -72,7 +74,8 @@ def test_wheels_are_calibrated_over_a_link_under_the_running_tracker(tmp_path: P
     file, endpoint = write_experiment(tmp_path, text), free_endpoint()
     at = f"--address=serial={tmp_path / 'robot'}"
     pace = ("--connect", endpoint, "--speed", "3", "--started-ns", str(time.monotonic_ns()))
-    with Session(SessionSettings(endpoint, hub=True)), ExitStack() as ending:
+    with Session(SessionSettings(endpoint, hub=True)) as hub, ExitStack() as ending:
+        hub.answer(RUN_IDENTITY, RunIdentity.of(Experiment.load(file), 0, "0123456789ab").pack())
         for words in (["tracker_bridge"], ["robot_agent", "emulate-robots"]):
             command = [sys.executable, "-m", *words, str(file), *pace, *([at] if len(words) > 1 else [])]
             ending.callback(ending.enter_context(subprocess.Popen(command, cwd=ROOT)).kill)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import signal
 import subprocess
 import sys
@@ -23,6 +22,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import Delivery, Topic, topic_of
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
@@ -59,7 +59,9 @@ class LiveSwarm:
         claim(self.session, Presence("server", "server", "here", 1))
         clock = scaled_clock(self._started_ns, speed)
         self.processes: list[subprocess.Popen[bytes]] = []
-        self.hub = LiveHub(self.session, clock, Experiment.load(self.file), self.check, print)
+        experiment = Experiment.load(self.file)
+        self.identity = RunIdentity.of(experiment, 0, "0123456789ab")
+        self.hub = LiveHub(self.session, clock, experiment, self.identity, self.check, print)
         self._batches = 0
 
     def start(self, module: str, *arguments: str, ahead_s: float = 0.0) -> subprocess.Popen[bytes]:
@@ -94,7 +96,8 @@ class LiveSwarm:
         """What comes, for ever, while the run's state is announced."""
         while True:
             if self._batches % STATE_EVERY_BATCHES == 0:
-                self.hub.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.RUNNING))
+                state = pb.RunState(phase=pb.RunState.RUNNING, run_id=self.identity.run_id)
+                self.hub.publish(topics.RUN_STATE, state)
             self._batches += 1
             yield from self.hub.gather().items
 
@@ -123,22 +126,19 @@ def test_a_killed_agent_goes_on_from_its_checkpoint(swarm: LiveSwarm) -> None:
     agent.kill()
     agent.wait()
     path = swarm.directory / "state" / "r0.json"
-    saved = Checkpoint(path.parent, "r0", _run_in(path)).load()
+    identity = swarm.identity
+    saved = Checkpoint(path.parent, "r0", identity.run_id, str(identity.fingerprint)).load()
     assert saved is not None
-    moves_saved = saved["policy"]["moves"]
+    moves_saved = saved.policy["moves"]
     assert moves_saved >= 4
     swarm.start_agent()
     item, move = next(
         found for found in swarm.received(topics.MOVE) if found[0].header.epoch not in first_epochs
     )
     assert move.number == moves_saved + 1, "it counts on"
-    before = saved["policy"]["controller"]["q"][move.state][move.action]
+    before = saved.policy["controller"]["q"][move.state][move.action]
     assert move.q_value - move.q_change == pytest.approx(before, abs=1e-12), "it learns on"
     assert item.header.sequence == 1, "a restart shows in the log as a new epoch that counts from 1"
-
-
-def _run_in(path: Path) -> str:
-    return str(json.loads(path.read_text())["run"])
 
 
 def test_corrupt_messages_are_counted_and_nothing_dies(swarm: LiveSwarm) -> None:

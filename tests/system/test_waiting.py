@@ -16,11 +16,13 @@ from swarm.clock import unix_clock
 from swarm.config.experiment import Experiment
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 from tests.support.swarm_runs import ROOT, experiment_text, learners, write_experiment
 
+RUN_ID = "0123456789ab"
 COMMANDS = {"robot_agent": ("--robot", "r0"), "tracker_bridge": ()}
 
 
@@ -87,7 +89,8 @@ class Server:
         self._session = Session(SessionSettings(endpoint, hub=True))
         claim(self._session, Presence("server", "server", "here", epoch))
         settings = Experiment.load(experiment)
-        self.hub = LiveHub(self._session, unix_clock(), settings, lambda: None, lambda line: None)  # noqa: ARG005
+        identity = RunIdentity.of(settings, 0, RUN_ID)
+        self.hub = LiveHub(self._session, unix_clock(), settings, identity, lambda: None, lambda line: None)  # noqa: ARG005
 
     def wait_for(self, key: str) -> None:
         while key not in {item.key for item in self.hub.gather().items}:
@@ -110,7 +113,7 @@ def test_every_change_of_the_connection_is_one_line(experiment: Path, stack: Exi
     assert agent.next_line() == "resumed: the server is back"
     server.wait_for("robot/r0/status")
     while agent.process.poll() is None:
-        server.hub.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.ENDED))
+        server.hub.publish(topics.RUN_STATE, pb.RunState(phase=pb.RunState.ENDED, run_id=RUN_ID))
         server.hub.gather()
     assert agent.rest() == "finished: the run has ended\n"
     assert agent.process.returncode == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ from google.protobuf.message import Message
 
 from server.conductor.carrier import SimulatedCarrier
 from server.conductor.conductor import Conductor
+from server.conductor.earlier import EarlierProgress
 from server.hubs.hub import Batch
 from server.reporter import Reporter
 from swarm.clock import NS_PER_S
@@ -19,6 +21,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import Topic
+from swarm.runtime.identity import RunIdentity
 from tests.support.swarm_runs import experiment_text, write_experiment
 
 TICK_NS = NS_PER_S // 10
@@ -27,11 +30,12 @@ TICK_NS = NS_PER_S // 10
 class Rig:
     """A conductor of three robots with 10 moves each, and what it says."""
 
-    def __init__(self, directory: Path) -> None:
+    def __init__(self, directory: Path, earlier: Mapping[str, EarlierProgress] | None = None) -> None:
         self.said: list[tuple[str, Any]] = []
         experiment = Experiment.load(write_experiment(directory, experiment_text(moves=10)))
         reporter = Reporter(self)
-        self.conductor = Conductor(experiment, 3, reporter, SimulatedCarrier(reporter))
+        identity, carrier = RunIdentity.of(experiment, 3), SimulatedCarrier(reporter)
+        self.conductor = Conductor(experiment, identity, reporter, carrier, earlier)
         self.t_ns = 0
         self._sequence = 0
 
@@ -52,6 +56,10 @@ class Rig:
 
 def move(robot: str, number: int) -> tuple[str, bytes]:
     return f"robot/{robot}/move", pb.Move(number=number, next_state=number).SerializeToString()
+
+
+def status(robot: str, moves: int) -> tuple[str, bytes]:
+    return f"robot/{robot}/status", pb.Status(activity="finished", moves=moves).SerializeToString()
 
 
 @pytest.fixture
@@ -75,6 +83,22 @@ def test_the_trial_ends_when_every_learner_has_made_its_moves(rig: Rig) -> None:
     assert rig.conductor.ended
     assert [state.phase for state in states] == [pb.RunState.ENDED]
     assert rig.conductor.moves == {"expert": 500, "imitator": 10, "loner": 10}
+
+
+def test_the_trial_ends_too_when_status_says_that_a_learner_has_made_its_moves(rig: Rig) -> None:
+    """The last moves may have been made while no server was there to hear them."""
+    rig.step(move("imitator", 10), move("loner", 7), status("expert", 999))
+    assert not rig.conductor.ended
+    rig.step(status("loner", 10))
+    assert rig.conductor.ended
+
+
+def test_it_goes_on_from_where_the_last_server_left_the_trial(tmp_path: Path) -> None:
+    robots = {"imitator": EarlierProgress(moves=10), "loner": EarlierProgress(moves=9)}
+    rig = Rig(tmp_path, robots)
+    assert rig.conductor.moves == {"expert": 0, "imitator": 10, "loner": 9}
+    rig.step(move("loner", 10))
+    assert rig.conductor.ended
 
 
 def test_best_paths_are_followed(rig: Rig) -> None:

@@ -9,6 +9,7 @@ import pytest
 from google.protobuf.message import Message
 
 from server.conductor.carrier import SimulatedCarrier
+from server.conductor.earlier import EarlierProgress
 from server.conductor.visits import REPEAT_NS, Visits
 from server.reporter import Reporter
 from swarm.config.experiment import (
@@ -187,3 +188,29 @@ def test_the_place_is_outside_the_goal_cell() -> None:
     goal = compartment.centre(compartment.grid.goal)
     robots_touch_m = 0.08
     assert max(abs(place.x_m - goal[0]), abs(place.y_m - goal[1])) > robots_touch_m
+
+
+def test_visits_are_counted_on_from_those_of_the_last_server() -> None:
+    conducted = Conducted(EXPERT, PUPIL)
+    conducted.visits.take_up("pupil", EarlierProgress(tracks=12, copied_paths=2, visits=2, visits_over=2))
+    assert conducted.due() == []
+    conducted.visits.track_ended("pupil", 20)
+    assert conducted.due() == ["pupil"]
+    ((_, order, _),) = conducted.orders()
+    assert order.visit == 3
+
+
+def test_a_visit_that_the_last_server_s_end_interrupted_is_over_and_the_robot_goes_home() -> None:
+    conducted = Conducted(EXPERT, PUPIL)
+    conducted.visits.take_up("pupil", EarlierProgress(tracks=5, visits=1))
+    assert conducted.due() == []
+    ((_, order, robot),) = conducted.orders()
+    assert (robot, order.kind, order.visit) == ("pupil", pb.Order.RUN, 1)
+    assert [robot for robot, _ in conducted.carries()] == ["pupil"]
+    assert conducted.due() == []
+
+
+def test_a_memory_that_was_full_stays_full() -> None:
+    conducted = Conducted(EXPERT, PUPIL, capacity=3)
+    conducted.visits.take_up("pupil", EarlierProgress(tracks=100, copied_paths=3, visits=3, visits_over=3))
+    assert conducted.due() == []

@@ -17,6 +17,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header
 from swarm.messages.topics import Delivery
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.zenoh_session import MOST_AT_ONCE, QUEUE_DEPTH, Session, SessionSettings, WireSample
 from tests.support.endpoints import free_endpoint
@@ -34,11 +35,14 @@ class Laboratory:
         experiment = Experiment.load(write_experiment(directory, experiment_text(learners(2))))
         hub_session = stack.enter_context(Session(SessionSettings(self._endpoint, hub=True)))
         self.said: list[str] = []
-        self.hub = LiveHub(hub_session, unix_clock(), experiment, lambda: None, self.said.append)
+        self._identity = RunIdentity.of(experiment, 0, "0123456789ab")
+        self.hub = LiveHub(
+            hub_session, unix_clock(), experiment, self._identity, lambda: None, self.said.append
+        )
 
-    def joins(self, kind: str, name: str, epoch: int = 1) -> Session:
+    def joins(self, kind: str, name: str, epoch: int = 1, identity: str = "") -> Session:
         session = self._stack.enter_context(Session(SessionSettings(self._endpoint)))
-        claim(session, Presence(kind, name, "board", epoch))
+        claim(session, Presence(kind, name, "board", epoch, identity or str(self._identity.fingerprint)))
         return session
 
     def hears_until(self, condition: Callable[[], bool]) -> dict[str, list[bytes]]:
@@ -110,6 +114,29 @@ def test_who_goes_and_comes_back_is_told_in_one_line_each(laboratory: Laboratory
     while "back" not in laboratory.events(heard):
         for item in laboratory.hub.gather().items:
             heard.setdefault(item.key, []).append(item.payload)
+
+
+def test_who_is_not_admitted_is_missing_and_its_messages_are_not_taken_in(laboratory: Laboratory) -> None:
+    laboratory.joins("tracker", "bridge")
+    laboratory.joins("robot", "r0")
+    stranger = laboratory.joins("robot", "r1", epoch=7, identity="aaaa-1-0-bbbb")
+    moves = stranger.publisher("robot/r1/move", Delivery.EVERY)
+    moves.put(b"foreign", attachment=Header(7, 1, 0).pack())
+    waiting = threading.Thread(target=laboratory.hub.start)
+    waiting.start()
+    while "waiting for r1" not in laboratory.said:
+        assert waiting.is_alive()
+    stranger.close()
+    own = laboratory.joins("robot", "r1", epoch=8)
+    waiting.join()
+    own.publisher("robot/r1/move", Delivery.EVERY).put(b"own", attachment=Header(8, 1, 0).pack())
+    heard: dict[str, list[bytes]] = {}
+    while "robot/r1/move" not in heard:
+        for item in laboratory.hub.gather().items:
+            heard.setdefault(item.key, []).append(item.payload)
+    assert heard["robot/r1/move"] == [b"own"]
+    assert "robot 'r1' on host 'board' does not take part" in laboratory.said[0]
+    assert not any("is gone" in line for line in laboratory.said), "who never took part does not go"
 
 
 def test_a_clock_that_is_an_hour_ahead_is_measured_and_told_of(laboratory: Laboratory) -> None:

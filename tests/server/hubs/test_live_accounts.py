@@ -9,6 +9,7 @@ from swarm.clock import unix_clock
 from swarm.config.experiment import Experiment
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim, present
 from swarm.runtime.node import LiveNode
 from swarm.runtime.zenoh_session import Session, SessionSettings
@@ -23,8 +24,9 @@ def test_the_closing_account_of_each_process_comes_after_all_that_it_sent(tmp_pa
         Session(SessionSettings(endpoint, hub=True)) as here,
         Session(SessionSettings(endpoint)) as there,
     ):
-        hub = LiveHub(here, unix_clock(), experiment, lambda: None, print)
-        claim(there, Presence("robot", "r0", "board", 77))
+        identity = RunIdentity.of(experiment, 0, "0123456789ab")
+        hub = LiveHub(here, unix_clock(), experiment, identity, lambda: None, print)
+        claim(there, Presence("robot", "r0", "board", 77, str(identity.fingerprint)))
         node = LiveNode(there, unix_clock(), 0.01, epoch=77)
         while not present(here, "robot"):
             pass

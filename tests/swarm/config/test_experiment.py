@@ -51,6 +51,12 @@ def test_a_good_file_and_its_defaults(tmp_path: Path) -> None:
     assert experiment.compartment(pupil).centre(0) == pytest.approx((1.56, 1.14))
 
 
+@pytest.mark.parametrize("name", ["run", "tracker", "server", "view"])
+def test_names_that_tables_use_otherwise_are_no_robot_s(tmp_path: Path, name: str) -> None:
+    with pytest.raises(UserError, match=rf"small\.toml:\d+: 'id' is '{name}', as in keys that name no robot"):
+        load(tmp_path, GOOD.replace("pupil", name))
+
+
 def test_what_the_command_line_changes(tmp_path: Path) -> None:
     experiment = load(tmp_path, GOOD)
     changed = experiment.changed(seed=7, moves=3, processes=2)

@@ -25,9 +25,9 @@ def buses() -> Iterator[tuple[Session, Session]]:
 
 
 def test_a_presence_survives_its_key() -> None:
-    presence = Presence("robot", "r1", "lab-pc.local", 17)
+    presence = Presence("robot", "r1", "lab-pc.local", 17, "fingerprint")
     assert Presence.parse(presence.key) == presence
-    assert Presence("robot", "r1", "odd/host name", 1).key == "alive/robot/r1/odd-host-name/1"
+    assert Presence("robot", "r1", "odd/host name", 1).key == "alive/robot/r1/odd-host-name/1/-"
 
 
 def test_a_second_robot_of_one_name_is_refused_and_both_hosts_are_named(

@@ -278,6 +278,7 @@ def test_a_process_that_is_told_to_leave_ends_its_step_first(swarm: Swarm) -> No
 
 SLOW = """
 import argparse, sys, time
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.zenoh_session import SessionSettings
 from swarm.runtime.process import add_common_arguments, joined
 
@@ -289,7 +290,8 @@ def step(t_ns):
 parser = argparse.ArgumentParser()
 add_common_arguments(parser)
 words = ["none.toml", "--lockstep", "--process", "a", "--connect", sys.argv[1]]
-with joined(parser.parse_args(words), "robot", ["a"], 0.1) as link:
+identity = RunIdentity({"run.seed": "1"}, 0, "schema")
+with joined(parser.parse_args(words), "robot", ["a"], 0.1, identity) as link:
     link.run(step)
 """
 
