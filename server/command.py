@@ -26,6 +26,7 @@ from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.runtime.process import OneLineParser
 from swarm.runtime.zenoh_session import Session, SessionSettings
+from swarm.services.notification import ServiceManager
 from swarm.signals import leave_on_signals
 
 RUN_ID_BYTES = 6
@@ -49,9 +50,11 @@ def conduct(asked: argparse.Namespace) -> None:
         if asked.listen:
             settings = SessionSettings(asked.listen, hub=True, config=asked.zenoh_config)
             session = open_session.enter_context(Session(settings))
+            manager = ServiceManager.of_environment()
+            manager.ready()
             trials = [plan.trial]
             _warn_of_bad(plan.experiment, progress)
-            environment = partial(laboratory, plan.experiment, session, progress.warn)
+            environment = partial(laboratory, plan.experiment, session, progress.warn, manager.going_on)
         directory = plan.directory or RunDirectory.create(asked.out, plan.experiment.run.name)
         run = Run(plan.experiment, plan.file, directory, environment, trials, progress, plan.run_id)
         summary = run.run()
