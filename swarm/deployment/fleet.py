@@ -42,6 +42,12 @@ class Target:
         found.add("lab" if self.conducts else "")
         return frozenset(found - {""})
 
+    @property
+    def units(self) -> list[str]:
+        """The names of the unit files that its services are started from."""
+        everything = self.services([robot.id for robot in self.robots])
+        return sorted({f"{AGENT}.service" if name.startswith(AGENT) else name for name in everything})
+
     def services(self, taking_part: Collection[str]) -> list[str]:
         """The services to start for an experiment with these robots; the server's comes first."""
         server = [f"{SERVER}.service"] if self.conducts else []

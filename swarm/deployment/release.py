@@ -46,10 +46,10 @@ def release_files(target: Target, laboratory: Laboratory, root: str, experiment:
     `root` is the machine's directory, from the root of its files.
     """
     found = dict(experiment)
-    for unit in files("swarm.deployment").joinpath("systemd").iterdir():
-        text = unit.read_text(encoding="utf-8")
+    for name in target.units:
+        text = files("swarm.deployment").joinpath("systemd", name).read_text(encoding="utf-8")
         text = text.replace(UNITS_ROOT, root).replace(UNITS_USER, f"User={target.machine.user}")
-        found[f"units/{unit.name}"] = text.encode()
+        found[f"units/{name}"] = text.encode()
     there = f"tcp/{laboratory.server_address}"
     for robot in target.robots:
         found[f"agent-{robot.id}.env"] = _environment(there, _agent_options(robot))

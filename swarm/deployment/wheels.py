@@ -11,12 +11,14 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from email.parser import HeaderParser
 from hashlib import sha256
+from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from packaging.requirements import Requirement
+from packaging.version import Version
 
 import swarm
 from swarm.errors import UserError
@@ -34,6 +36,8 @@ OLDEST_GLIBC = 17
 """2.17, that of manylinux2014: what older machines have, Python 3.11 has no wheels for."""
 BEGINNING_OF_ZIP = "315532800"
 """1980, where a zip's times begin: a wheel that is built twice from one source has the same bytes."""
+OLDEST_SETUPTOOLS = Version("77")
+"""As in pyproject.toml."""
 NOT_BUILT_IN = shutil.ignore_patterns(
     ".*", "build", "dist", "runs", "site", "docs", "tests", "__pycache__", "*.egg-info", "wheelhouse"
 )
@@ -123,15 +127,28 @@ class Wheelhouse:
                 f"{self._directory}: there is no wheel of swarm-runtime {version}, and this is no checkout "
                 "that one could be built from: put the wheel there"
             )
-        place = self._directory / "built"
         with TemporaryDirectory() as folder:
             copy = shutil.copytree(source, Path(folder) / "source", ignore=NOT_BUILT_IN)
-            isolation = ["--no-build-isolation"] if find_spec("setuptools") else []
-            reason = _pip(["wheel", "--no-deps", *isolation, "--wheel-dir", str(place), str(copy)])
+            place = self._directory / "built" / _digest_of_tree(copy)
+            reason = "" if place.exists() else _built(copy, place)
         found = sorted(place.glob(f"swarm_runtime-{version}-*.whl"))
-        if reason or not found:
+        if not found:
+            reason = reason or "it builds another version"
             raise UserError(f"no wheel of swarm-runtime {version} could be built from {source}: {reason}")
         return found[-1]
+
+
+def _digest_of_tree(folder: Path) -> str:
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    told = "".join(f"{path.relative_to(folder)} {digest_of(path)}\n" for path in files)
+    return sha256(told.encode()).hexdigest()[:12]
+
+
+def _built(source: Path, place: Path) -> str:
+    """Empty if the wheel was built, else why not. What builds it is fetched, if it is not here."""
+    here = metadata.version("setuptools") if find_spec("setuptools") else "0"
+    isolation = ["--no-build-isolation"] if Version(here) >= OLDEST_SETUPTOOLS else []
+    return _pip(["wheel", "--no-deps", *isolation, "--wheel-dir", str(place), str(source)])
 
 
 def requirements(wheel: Path, extras: Collection[str], supplied: Mapping[str, str]) -> tuple[list[str], bool]:
@@ -163,9 +180,9 @@ def _bracketed(extras: Collection[str]) -> str:
     return f"[{','.join(sorted(extras))}]" if extras else ""
 
 
-def digest_of(wheel: Path) -> str:
+def digest_of(file: Path) -> str:
     """Of its bytes: two wheels of one name are told apart."""
-    return sha256(wheel.read_bytes()).hexdigest()
+    return sha256(file.read_bytes()).hexdigest()
 
 
 def _pip(words: list[str]) -> str:
@@ -177,5 +194,9 @@ def _pip(words: list[str]) -> str:
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
     if done.returncode == 0:
         return ""
-    errors = [line.removeprefix("ERROR: ") for line in done.stderr.splitlines() if line.startswith("ERROR")]
+    errors = [
+        line.removeprefix("ERROR: ")
+        for line in done.stderr.splitlines()
+        if line.startswith(("ERROR", "error: "))
+    ]
     return errors[-1] if errors else f"pip ended with exit code {done.returncode}"
