@@ -99,9 +99,8 @@ class Wheelhouse:
     def installer(self) -> Path:
         """pip, for machines that have none."""
         place = self._directory / "installer"
-        if not list(place.glob("pip-*.whl")):
-            self._fetch(["pip"], [], place)
-        return max(place.glob("pip-*.whl"))
+        here = sorted(place.glob("pip-*.whl"))
+        return here[-1] if here else self._fetch(["pip"], [], place)[0]
 
     def libraries(self, needed: Iterable[str], platform: Platform) -> list[Path]:
         """The wheels of these requirements, and of what they need in turn."""

@@ -42,14 +42,24 @@ def _changed_to(board: Board, release: str, former: str, within_s: float) -> dic
     try:
         return _started(board, release, former, within_s)
     except BoardError as failure:
-        if former in ("", release):
-            for name in board.described(release)["services"]:
-                board.services.stop(name)
-            board.link("current", former)
-            raise
-        step(f"going back to {former}")
+        raise BoardError(f"{failure}; {_undone(board, release, former, within_s)}") from failure
+
+
+def _undone(board: Board, release: str, former: str, within_s: float) -> str:
+    """What runs now that a release did not become ready."""
+    if former == release:
+        return "it ran before, and is started again and again"
+    if not former:
+        for name in board.described(release)["services"]:
+            board.services.stop(name)
+        board.link("current", "")
+        return "nothing runs there now"
+    step(f"going back to {former}")
+    try:
         _started(board, former, release, within_s)
-        raise BoardError(f"{failure}; the release before runs again") from failure
+    except BoardError as failure:
+        return f"nor does the release before: {failure}"
+    return "the release before runs again"
 
 
 def _started(board: Board, release: str, former: str, within_s: float) -> dict[str, str]:

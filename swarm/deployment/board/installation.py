@@ -37,11 +37,11 @@ def _install_program(board: Board, request: Request) -> None:
             raise BoardError(f"{wheel.name} has not arrived whole: deploy again")
     step(f"installing {len(wheels)} wheels")
     python = str(place / "bin" / "python")
-    pip = [python, str(board.wheels / request["installer"] / "pip"), "--disable-pip-version-check"]
+    pip = [python, "-I", str(board.wheels / request["installer"] / "pip"), "--disable-pip-version-check"]
     offline = ["--no-index", "--no-deps", "--no-cache-dir", "--quiet", "--no-warn-script-location"]
     run([*pip, "install", *offline, *map(str, wheels)])
     step("trying it")
-    told = run([python, "-m", "swarm.runtime.versions"])
+    told = run([python, "-I", "-m", "swarm.runtime.versions"])
     about = {"versions": json.loads(told), "wheels": [*request["wheels"], request["installer"]]}
     (place / COMPLETE).write_text(json.dumps(about))
 

@@ -41,7 +41,12 @@ class Supervised:
         unit, _, instance = name.removesuffix(".service").partition("@")
         file = f"{unit}@.service" if instance else f"{unit}.service"
         current = self._root / "current"
-        words: list[str | Path] = [current / "program" / "bin" / "python", "-m", "swarm.services.supervisor"]
+        words: list[str | Path] = [
+            current / "program" / "bin" / "python",
+            "-I",
+            "-m",
+            "swarm.services.supervisor",
+        ]
         words += [current / "units" / file, instance, self._state_file(name)]
         self._state_file(name).write_text(json.dumps({"state": "starting"}))
         with self._log(name).open("ab") as log:
