@@ -90,11 +90,14 @@ def simulated(
         emulated = emulated_addresses(experiment, Path(sockets)) if emulate else {}
         trial = plan.identity.trial
         specs = run_table(experiment, plan.file, endpoint, trial, pace, plan.output, emulated)
-        claim(session, _presence(plan.identity))
+        presence = _presence(plan.identity)
+        claim(session, presence)
         with Supervisor(specs, plan.output, spread(len(specs), cores)) as supervisor:
             core_of = {os.getpid(): cores[0], **supervisor.core_of}
             probe = PlacementProbe(partial(place, core_of, cores))
-            hub, flush_every = _hub(experiment, plan.identity, session, pace, supervisor, warn, probe)
+            hub, flush_every = _hub(
+                experiment, plan.identity, session, pace, supervisor, warn, probe, presence.epoch
+            )
             reporter = Reporter(hub)
             yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every, warn)
 
@@ -125,11 +128,12 @@ def _hub(
     supervisor: Supervisor,
     warn: Warn,
     probe: PlacementProbe,
+    epoch: int,
 ) -> tuple[Hub, int]:
     """The hub of a pace, and how many of its batches come between two flushes."""
     if not pace.lockstep:
         clock = scaled_clock(pace.started_ns, pace.speed)
-        live = LiveHub(session, clock, experiment, identity, supervisor.check, warn)
+        live = LiveHub(session, clock, experiment, identity, supervisor.check, warn, epoch)
         return live, _live_flush(experiment, pace.speed)
     names, ticks = list(supervisor.pids), experiment.ticks_per_exchange
     tick_s = experiment.simulation.tick_s
@@ -164,8 +168,9 @@ def laboratory(
 
     They are not ours to check: who is missing shows by presence and health. `going_on` is called every tick.
     """
-    claim(session, _presence(plan.identity))
-    hub = LiveHub(session, unix_clock(), experiment, plan.identity, going_on, warn)
+    presence = _presence(plan.identity)
+    claim(session, presence)
+    hub = LiveHub(session, unix_clock(), experiment, plan.identity, going_on, warn, presence.epoch)
     reporter = Reporter(hub)
     carrier = Operator(reporter, warn)
     yield TrialEnvironment(hub, reporter, carrier, _live_flush(experiment, 1.0), warn, waits_for_people=True)

@@ -20,10 +20,11 @@ _HEAD = """# Everything on the wire
 One line of `swarm/messages/topics.py` says everything about a message. `{robot}` stands for a robot's id.
 Payloads are protobuf messages of `swarm/messages/swarm.proto`; 24 bytes beside each carry the sender's epoch,
 the message's number and the run's time (`swarm/messages/header.py`). A robot receives only what the column
-*to robots* marks: its own pose, its own orders and the run's state.
+*to robots* marks: its own pose, its own orders and the run's state. Only who stands under *from* is believed,
+a robot only under its own id; [certificates](security.md) make that sure.
 
-| key | message | meaning | rate | delivery | logged | to robots |
-|---|---|---|---|---|---|---|
+| key | message | from | meaning | rate | delivery | logged | to robots |
+|---|---|---|---|---|---|---|---|
 """
 
 _MEANING = {
@@ -45,6 +46,7 @@ def _cells(topic: Topic[Any]) -> tuple[str, ...]:
     return (
         f"`{topic.pattern}`",
         f"`{topic.message.DESCRIPTOR.name}`",
+        topic.sender.value,
         topic.meaning,
         rate,
         topic.delivery.value,
