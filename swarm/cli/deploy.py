@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from swarm.cli.lab import Json, LaboratoryFile
+from swarm.cli.lab import KEYS_FOLDER, Json, LaboratoryFile
 from swarm.cli.output import print_json, print_table
 from swarm.errors import RunFailedError, UserError
 from swarm.extras import require_extra
@@ -27,6 +27,9 @@ def deploy_command(
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would change.")] = False,
     rollback: Annotated[bool, typer.Option("--rollback", help="Go back to the release before.")] = False,
+    insecure: Annotated[
+        bool, typer.Option("--insecure", help="Without certificates, on a network of your own.")
+    ] = False,
     interrupt: Annotated[bool, typer.Option("--interrupt", help="End a run that is under way.")] = False,
     wheelhouse: Annotated[
         Path | None,
@@ -41,8 +44,11 @@ def deploy_command(
     """
     require_extra("deploy", "asyncssh", "packaging")
     from swarm.config.laboratory import Laboratory
-    from swarm.deployment.deploy import deploy, planner, roll_back
+    from swarm.deployment.deploy import deploy, roll_back
+    from swarm.deployment.plan import Planner
+    from swarm.deployment.release import ExperimentFiles, Protection
     from swarm.deployment.visit import State
+    from swarm.deployment.wheels import Wheelhouse
     from swarm.runtime.versions import versions
 
     lab = Laboratory.load(laboratory)
@@ -52,8 +58,14 @@ def deploy_command(
         outcomes = roll_back(lab, _tell)
     else:
         _check(laboratory, experiment)
-        plans = planner(lab, wheelhouse or laboratory.parent / WHEELHOUSE, versions()["program"], experiment)
-        outcomes = deploy(lab, plans, _tell, dry_run=dry_run, interrupt=interrupt)
+        planner = Planner(
+            lab,
+            Wheelhouse(wheelhouse or laboratory.parent / WHEELHOUSE),
+            lab.versions.program or versions()["program"],
+            ExperimentFiles.read(experiment) if experiment else None,
+            Protection.of(laboratory.parent / KEYS_FOLDER, insecure),
+        )
+        outcomes = deploy(lab, planner, _tell, dry_run=dry_run, interrupt=interrupt)
     if json:
         print_json({"laboratory": str(laboratory), "machines": [outcome.as_json() for outcome in outcomes]})
     else:

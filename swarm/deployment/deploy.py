@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import asyncio
 from base64 import b64encode
-from pathlib import Path
 
 from swarm.config.laboratory import Laboratory
 from swarm.deployment.fleet import SERVER
 from swarm.deployment.link import MachineError
 from swarm.deployment.plan import Plan, Planner
-from swarm.deployment.release import ExperimentFiles
 from swarm.deployment.visit import Fleet, Outcome, State, Tell, Visit, visited
-from swarm.deployment.wheels import Wheelhouse
 from swarm.errors import UserError
 
 
@@ -108,10 +105,3 @@ async def _rolled_back(laboratory: Laboratory, tell: Tell) -> list[Outcome]:
     async with visited(laboratory, tell) as fleet:
         await fleet.each(go_back)
         return fleet.outcomes
-
-
-def planner(laboratory: Laboratory, wheelhouse: Path, version: str, experiment: Path | None) -> Planner:
-    """A planner with the version of [versions], or else with this one's."""
-    wanted = laboratory.versions.program or version
-    files = ExperimentFiles.read(experiment) if experiment else None
-    return Planner(laboratory, Wheelhouse(wheelhouse), wanted, files)

@@ -14,7 +14,7 @@ from typing import Any
 from swarm.config.laboratory import Laboratory
 from swarm.deployment.fleet import Target
 from swarm.deployment.link import MachineError
-from swarm.deployment.release import ID_DIGITS, ExperimentFiles, Files, release_files, release_id
+from swarm.deployment.release import ID_DIGITS, ExperimentFiles, Files, Protection, release_files, release_id
 from swarm.deployment.wheels import Platform, Wheelhouse, digest_of, requirements
 
 OLDEST_PYTHON = (3, 11)
@@ -64,11 +64,13 @@ class Planner:
         wheelhouse: Wheelhouse,
         version: str,
         experiment: ExperimentFiles | None,
+        protection: Protection,
     ) -> None:
         self._laboratory = laboratory
         self._wheelhouse = wheelhouse
         self._version = version
         self._experiment = experiment
+        self._protection = protection
         self._one_at_a_time = asyncio.Lock()
 
     async def plan(self, target: Target, found: Mapping[str, Any]) -> Plan:
@@ -79,7 +81,7 @@ class Planner:
         _check_room(found, wheels)
         about = found["about"]
         experiment = self._experiment_files(found)
-        files = release_files(target, self._laboratory, found["root"], experiment)
+        files = release_files(target, self._laboratory, self._protection, found["root"], experiment)
         services = self._services(target, about)
         program = _digest(found["python"], str(system_packages), *sorted(wheels))
         return Plan(

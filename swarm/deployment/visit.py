@@ -63,10 +63,8 @@ class Visit:
     found: dict[str, Any]
     """What the machine says of itself (swarm.deployment.board.machine)."""
     outcome: Outcome
-    round_trip_ns: int
-    """How long it took to say so."""
-    asked_t_ns: int
-    """When it was asked, by this machine's Unix time."""
+    clock_ahead_ns: int
+    """Its clock against this one, less what the answer was under way: some milliseconds."""
 
 
 Work = Callable[[Visit], Awaitable[None]]
@@ -114,9 +112,8 @@ async def _reached(
         linked(target.machine, policies.services.value, policies.known_hosts, say)
     )
     await link.prepare()
-    asked_t_ns, answered = time.time_ns(), time.monotonic_ns()
     found = await link.ask("look", packages=SYSTEM_PACKAGES)
-    visits.append(Visit(target, link, found, outcome, time.monotonic_ns() - answered, asked_t_ns))
+    visits.append(Visit(target, link, found, outcome, found["t_ns"] - time.time_ns()))
 
 
 async def _guarded(outcome: Outcome, work: Awaitable[None]) -> None:

@@ -22,6 +22,7 @@ from packaging.version import Version
 
 import swarm
 from swarm.errors import UserError
+from swarm.version import DISTRIBUTION
 
 SYSTEM_PACKAGES = {
     "numpy": "numpy",
@@ -121,10 +122,10 @@ class Wheelhouse:
 
     def _built(self, version: str) -> Path:
         source = Path(swarm.__file__).parent.parent
-        if not (source / "pyproject.toml").exists():
+        if not (source / "pyproject.toml").exists() or version != metadata.version(DISTRIBUTION):
             raise UserError(
-                f"{self._directory}: there is no wheel of swarm-runtime {version}, and this is no checkout "
-                "that one could be built from: put the wheel there"
+                f"{self._directory}: there is no wheel of {DISTRIBUTION} {version}, and this is no checkout "
+                "that it could be built from: put the wheel there"
             )
         with TemporaryDirectory() as folder:
             copy = shutil.copytree(source, Path(folder) / "source", ignore=NOT_BUILT_IN)
@@ -132,7 +133,6 @@ class Wheelhouse:
             reason = "" if place.exists() else _built(copy, place)
         found = sorted(place.glob(f"swarm_runtime-{version}-*.whl"))
         if not found:
-            reason = reason or "it builds another version"
             raise UserError(f"no wheel of swarm-runtime {version} could be built from {source}: {reason}")
         return found[-1]
 

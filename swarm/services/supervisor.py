@@ -65,10 +65,10 @@ class Supervisor:
         self._told_to_stop = True
 
     def _pause(self, pause_s: float) -> None:
-        """A signal during a sleep does not end it: so it is slept in pieces."""
+        """Nobody speaks meanwhile: to listen is to wait, and a signal is heeded soon."""
         until_s = time.monotonic() + pause_s
         while not self._told_to_stop and time.monotonic() < until_s:
-            time.sleep(LOOK_EVERY_S)
+            self._heard()
 
     def _once(self) -> int:
         """Start the process and watch it until it has ended; its exit code."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
+import threading
 from collections.abc import Callable
 
-LOOK_EVERY_S = 0.01
+LOOK_EVERY_S = 0.005
 
 
 def until(condition: Callable[[], bool]) -> None:
     """Return once the condition holds."""
     while not condition():
-        time.sleep(LOOK_EVERY_S)
+        threading.Event().wait(LOOK_EVERY_S)

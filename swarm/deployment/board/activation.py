@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import json
 import shutil
-import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from swarm.deployment.board.layout import COMPLETE, Board
 from swarm.deployment.board.reporting import BoardError, step
+from swarm.deployment.board.waiting import until
 
 Request = dict[str, Any]
-LOOK_EVERY_S = 0.2
-"""How late it is seen that a service is ready; a person does not notice."""
 
 
 def activate(board: Board, request: Request) -> dict[str, Any]:
@@ -77,19 +76,23 @@ def _started(board: Board, release: str, former: str, within_s: float) -> dict[s
 
 
 def _awaited(board: Board, names: list[str], within_s: float) -> dict[str, str]:
-    deadline_s = time.monotonic() + within_s
-    while True:
-        states = {name: board.services.state(name) for name in names}
-        wrong = [name for name, state in states.items() if state not in ("active", "starting")]
-        if wrong:
-            last = board.services.last_words(wrong[0])
-            raise BoardError(f"{wrong[0]} is {states[wrong[0]]}{f' ({last})' if last else ''}")
-        if all(state == "active" for state in states.values()):
-            return states
-        if time.monotonic() > deadline_s:
-            slow = [name for name, state in states.items() if state != "active"]
-            raise BoardError(f"{', '.join(slow)} did not become ready within {within_s:g} s")
-        time.sleep(LOOK_EVERY_S)
+    states: dict[str, str] = {}
+
+    def settled() -> bool:
+        states.update({name: board.services.state(name) for name in names})
+        return "starting" not in states.values() or bool(_wrong(states))
+
+    if not until(settled, within_s):
+        slow = [name for name, state in states.items() if state == "starting"]
+        raise BoardError(f"{', '.join(slow)} did not become ready within {within_s:g} s")
+    for name in _wrong(states):
+        last = board.services.last_words(name)
+        raise BoardError(f"{name} is {states[name]}{f' ({last})' if last else ''}")
+    return states
+
+
+def _wrong(states: Mapping[str, str]) -> list[str]:
+    return [name for name, state in states.items() if state not in ("active", "starting")]
 
 
 def _prune(board: Board, keep: int) -> None:

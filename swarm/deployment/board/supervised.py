@@ -7,14 +7,12 @@ import json
 import os
 import signal
 import subprocess
-import time
 from contextlib import suppress
 from pathlib import Path
 
 from swarm.deployment.board.reporting import BoardError
+from swarm.deployment.board.waiting import until
 
-LOOK_EVERY_S = 0.1
-"""How late the end of a supervisor is seen."""
 LARGEST_LOG_BYTES = 10_000_000
 """A service's output is put aside at its next start, and replaces what was put aside before."""
 STOP_WITHIN_S = 90.0
@@ -56,13 +54,16 @@ class Supervised:
 
     def stop(self, name: str) -> None:
         """End a service and its supervisor."""
-        deadline_s = time.monotonic() + STOP_WITHIN_S
-        while pid := self._supervisor(name):
+        if not until(lambda: not self._told_to_end(name), STOP_WITHIN_S):
+            raise BoardError(f"{name} does not end")
+
+    def _told_to_end(self, name: str) -> bool:
+        """Whether there is a supervisor yet; it knows now that it should end."""
+        pid = self._supervisor(name)
+        if pid:
             with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGTERM)
-            if time.monotonic() > deadline_s:
-                raise BoardError(f"{name} does not end")
-            time.sleep(LOOK_EVERY_S)
+        return bool(pid)
 
     def state(self, name: str) -> str:
         """active, starting, or what else it is."""

@@ -8,6 +8,9 @@ from pathlib import Path
 
 from swarm.deployment.board.reporting import run
 
+CHRONY_FOLDER = Path("/etc/chrony/conf.d")
+"""Where Debian's chrony looks for more settings."""
+
 
 class Systemd:
     """Services of the system's manager; whoever is not root asks it by sudo."""
@@ -16,10 +19,15 @@ class Systemd:
         self._sudo = [] if os.geteuid() == 0 else ["sudo", "-n"]
 
     def install(self, release: Path) -> None:
-        """The units of a release, where systemd looks for them."""
+        """The units of a release, where systemd looks for them, and from whom the clock is set."""
         units = [str(path) for path in sorted((release / "units").iterdir())]
         run([*self._sudo, "install", "-m", "644", "-t", "/etc/systemd/system", *units])
         self._ask("daemon-reload")
+        clock, settings = release / "chrony.conf", CHRONY_FOLDER / "swarm.conf"
+        known = settings.read_bytes() if settings.exists() else b""
+        if CHRONY_FOLDER.is_dir() and clock.read_bytes() != known:
+            run([*self._sudo, "install", "-m", "644", str(clock), str(settings)])
+            self._ask("restart", "chrony")
 
     def restart(self, name: str) -> None:
         """Start a service anew, also after the machine's next start."""

@@ -75,7 +75,9 @@ south_west_m = [{0.15 + 1.5 * number}, 0.3]
 
     def deploy(self, *words: str) -> list[dict[str, Any]]:
         """The machines in what `--json` prints."""
-        done = CliRunner().invoke(app, ["deploy", str(self.directory / "lab.toml"), *words, "--json"])
+        done = CliRunner().invoke(
+            app, ["deploy", str(self.directory / "lab.toml"), *words, "--insecure", "--json"]
+        )
         if not done.stdout:
             assert done.exception
             raise done.exception
