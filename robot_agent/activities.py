@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from robot_agent.drivers.kinematics import WheelSpeeds
+from robot_agent.drivers.kinematics import STOPPED, WheelSpeeds
 from robot_agent.inbox import AgentInbox
 from robot_agent.navigation.motion import Motion
 from robot_agent.policies.policy import Policy
@@ -91,6 +91,10 @@ class Activity:
     def stopped(self) -> Activity:
         """What follows when the run does not go on: a move under way is given up."""
         return Waiting(self.task, self.state)
+
+    def emergency(self) -> Activity:
+        """What follows when an emergency stop is heard: whatever is under way is given up."""
+        return EmergencyStop(self.task, self.stopped().state)
 
     def displaced(self) -> Activity:
         """What follows when somebody carried the robot away: a move under way is given up."""
@@ -271,6 +275,35 @@ class Visiting(Activity):
     def displaced(self) -> Activity:
         """Being carried is part of a visit."""
         self.visit.displaced()
+        return self
+
+
+class EmergencyStop(Activity):
+    """Standing until somebody releases the emergency; wherever the robot is then, it goes on from there."""
+
+    name = "estopped"
+
+    def enter(self) -> None:
+        self.task.motion.stop()
+
+    def decide(self, seen: Seen) -> Activity:  # noqa: ARG002
+        if self.task.inbox.latch.engaged:
+            return self
+        return Waiting(self.task, self.state, lost=True)
+
+    def act(self, seen: Seen) -> Acted:  # noqa: ARG002
+        """At once: no braking is planned."""
+        return Acted(STOPPED, self)
+
+    def emergency(self) -> Activity:
+        return self
+
+    def stopped(self) -> Activity:
+        """Also a trial that is over leaves it in force."""
+        return self
+
+    def displaced(self) -> Activity:
+        """People carry robots in emergencies."""
         return self
 
 

@@ -46,7 +46,9 @@ class Agent:
 
     def decide(self, seen: Seen) -> None:
         """Whether the robot may go on, and with what."""
-        if self._task.policy.finished:
+        if self._task.inbox.latch.engaged:
+            self._become(self.activity.emergency())
+        elif self._task.policy.finished:
             self._become(Finished(self._task, self.activity.state))
         elif self._task.inbox.stopped:
             self._become(self.activity.stopped())
@@ -78,6 +80,8 @@ class Agent:
             seen.pose_age_s,
             self._task.inbox.bad,
             self._tells_health.health if self._tells_health else None,
+            paused=self._task.inbox.paused,
+            estopped=self._task.inbox.latch.engaged,
         )
 
     def resume_from(self, checkpoint: Checkpoint) -> str:

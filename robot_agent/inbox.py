@@ -1,4 +1,4 @@
-"""All that a robot hears: its own pose, its own orders, the run's state."""
+"""All that a robot hears: its own pose, its own orders, the run's state, and an emergency stop."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from swarm.clock import NS_PER_S
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.runtime.emergency_latch import EmergencyLatch
 from swarm.runtime.node import Node
 
 CONDUCTOR_SILENT_S = 5.0
@@ -15,9 +16,10 @@ CONDUCTOR_SILENT_S = 5.0
 
 
 class AgentInbox:
-    """The three subscriptions of one robot.
+    """The four subscriptions of one robot.
 
     A robot goes on only while it hears the run's state: after 5 s without it finishes its move and waits.
+    An emergency stop stays in force in `latch`, whatever else is heard, until the server releases it.
     """
 
     def __init__(self, node: Node, robot: str) -> None:
@@ -26,17 +28,34 @@ class AgentInbox:
         self._poses = node.subscribe(topics.POSE, robot)
         self._orders = node.subscribe(topics.ORDER, robot)
         self._run_states = node.subscribe(topics.RUN_STATE)
+        self._estops = node.subscribe(topics.ESTOP)
+        self.latch = EmergencyLatch(None)
+        self.paused = False
+        """Whether this robot is to stand although the others go on."""
         self._phase = pb.RunState.PHASE_UNSPECIFIED
         self._heard_ns = 0
         self._order = pb.Order(kind=pb.Order.RUN)
 
     def poll(self, t_ns: int) -> None:
-        """Take in orders and the run's state."""
-        for order in self._orders.take():
-            self._order = order.message
+        """Take in the run's state and orders; what releases an emergency comes after all that declares it."""
+        for stop in self._estops.take():
+            self.latch.engage(f"emergency stop by {stop.message.operator} {stop.message.reason}".rstrip())
         for state in self._run_states.take():
             self._phase = state.message.phase
             self._heard_ns = t_ns
+            if self._phase == pb.RunState.ESTOPPED:
+                self.latch.engage("emergency stop, says the server")
+        for order in self._orders.take():
+            self._obey(order.message)
+
+    def _obey(self, order: pb.Order) -> None:
+        """What a robot is to do stays as it was while the robot is paused."""
+        if order.kind == pb.Order.RELEASE:
+            self.latch.release()
+        elif order.kind in (pb.Order.PAUSE, pb.Order.RESUME):
+            self.paused = order.kind == pb.Order.PAUSE
+        else:
+            self._order = order
 
     def fixes(self) -> Iterator[tuple[Pose, int]]:
         """The tracker's poses since the last call, each with the time it was captured, on this clock."""
@@ -47,7 +66,8 @@ class AgentInbox:
     def running(self, t_ns: int) -> bool:
         """Whether the robot may begin a move now."""
         heard = t_ns - self._heard_ns <= CONDUCTOR_SILENT_S * NS_PER_S
-        return heard and self._phase == pb.RunState.RUNNING and self._order.kind == pb.Order.RUN
+        goes_on = self._phase == pb.RunState.RUNNING and not self.paused
+        return heard and goes_on and self._order.kind == pb.Order.RUN
 
     @property
     def visit_order(self) -> pb.Order | None:
@@ -62,4 +82,4 @@ class AgentInbox:
     @property
     def bad(self) -> int:
         """Messages refused so far."""
-        return self._poses.bad + self._orders.bad + self._run_states.bad
+        return self._poses.bad + self._orders.bad + self._run_states.bad + self._estops.bad

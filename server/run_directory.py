@@ -92,6 +92,11 @@ class RunDirectory:
         """Where the processes of a trial print to."""
         return self.path / "output" / trial_name(trial)
 
+    @property
+    def emergency(self) -> Path:
+        """There while an emergency stop is in force."""
+        return self.path / "estop"
+
     def reserve(self) -> None:
         """Take room now for what is written once there is none: how the run ended."""
         self._reserve.write_bytes(bytes(RESERVED_BYTES))
