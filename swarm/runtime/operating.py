@@ -21,6 +21,9 @@ M = TypeVar("M", bound=Message)
 
 ANSWER_WITHIN_S = 3.0
 """A server answers at its next tick, 0.1 s; one that writes to a slow disk somewhat later."""
+QUESTIONS = 10
+BETWEEN_QUESTIONS_S = 0.2
+"""Together two seconds: a server that has just been started may need them before it can be asked."""
 ESTOP_REPEATED = 25
 ESTOP_EVERY_S = 0.02
 """Half a second of them. One is enough on a good link; on one that loses packets those that follow tell its
@@ -40,12 +43,16 @@ def send_order(session: Session, order: pb.OperatorOrder) -> pb.OrderAnswer:
     """
     if order.kind == pb.OperatorOrder.ESTOP:
         publish_estop(session, order)
-    return _answered(session, OPERATOR_ORDER, pb.OrderAnswer, order.SerializeToString())
+    ask_status(session)  # An order is given once, and so only to a server that listens.
+    return _read(pb.OrderAnswer, session.ask(OPERATOR_ORDER, ANSWER_WITHIN_S, order.SerializeToString()))
 
 
 def ask_status(session: Session) -> pb.RunStatus:
     """How the run goes now. UserError if no server answers."""
-    return _answered(session, RUN_STATUS, pb.RunStatus)
+    for _ in zip(range(QUESTIONS), unix_clock().ticks(BETWEEN_QUESTIONS_S), strict=False):
+        if answers := session.ask(RUN_STATUS, ANSWER_WITHIN_S):
+            break
+    return _read(pb.RunStatus, answers)
 
 
 def publish_estop(session: Session, order: pb.OperatorOrder) -> None:
@@ -58,8 +65,7 @@ def publish_estop(session: Session, order: pb.OperatorOrder) -> None:
         publisher.put(message, attachment=Header(epoch, number, t_ns).pack())
 
 
-def _answered(session: Session, key: str, kind: type[M], payload: bytes | None = None) -> M:
-    answers = session.ask(key, ANSWER_WITHIN_S, payload)
+def _read(kind: type[M], answers: list[bytes]) -> M:
     if not answers:
         raise UserError("no server of a run answers there: is one running, and does it listen here?")
     try:
