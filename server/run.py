@@ -13,8 +13,8 @@ from typing import Any
 
 from server.conductor.conductor import Conductor
 from server.conductor.earlier import earlier_progress
+from server.conductor.run_control import RunControl
 from server.control.desk import Desk
-from server.control.run_control import RunControl
 from server.control.status_board import StatusBoard
 from server.processes.environment import Environment, TrialEnvironment, TrialPlan
 from server.progress import RunProgress

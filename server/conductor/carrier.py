@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from server.control.prompts import Prompts
+from server.conductor.prompts import Prompts
 from server.reporter import Reporter
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb

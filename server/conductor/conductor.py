@@ -8,9 +8,9 @@ from server.conductor.camera_views import CameraViews
 from server.conductor.carrier import Carrier
 from server.conductor.copy_errors import CopyErrors
 from server.conductor.earlier import EarlierProgress
+from server.conductor.run_control import RunControl
 from server.conductor.standstill import Standstill
 from server.conductor.visits import Visits
-from server.control.run_control import RunControl
 from server.hubs.hub import Batch
 from server.reporter import Reporter
 from swarm.clock import NS_PER_S

@@ -1,1 +1,1 @@
-"""What a person at the controls wants of a live run, and what they see of it."""
+"""Where people learn how a live run goes, and where their orders come in."""

@@ -7,8 +7,8 @@ from typing import TypeVar
 from google.protobuf.message import Message
 
 from server.conductor.conductor import Conductor
-from server.control.prompts import Prompts
-from server.control.run_control import RunControl
+from server.conductor.prompts import Prompts
+from server.conductor.run_control import RunControl
 from server.control.status_board import StatusBoard
 from server.hubs.hub import Batch
 from server.reporter import Reporter

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from server.conductor.conductor import Conductor
-from server.control.prompts import Prompts
+from server.conductor.prompts import Prompts
 from server.control.time_left import TimeLeft
 from server.hubs.hub import Batch
 from swarm.clock import NS_PER_S

@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from server.conductor.carrier import Carrier, Operator, SimulatedCarrier
-from server.control.prompts import Prompts
+from server.conductor.prompts import Prompts
 from server.hubs.hub import Hub
 from server.hubs.live import LiveHub
 from server.hubs.lockstep import LockstepHub

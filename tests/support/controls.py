@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from server.control.prompts import Prompts
-from server.control.run_control import RunControl
+from server.conductor.prompts import Prompts
+from server.conductor.run_control import RunControl
 from server.reporter import Reporter
 from swarm.config.experiment import Experiment
 from swarm.runtime.emergency_latch import EmergencyLatch

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -10,12 +9,10 @@ from pathlib import Path
 import pytest
 
 from swarm.clock import unix_clock
-from swarm.logs.check import check_run
 from swarm.messages import swarm_pb2 as pb
 from swarm.runtime.operating import ask_status, send_order
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.laboratory import Laboratory
-from tests.support.swarm_runs import messages
 
 Order = pb.OperatorOrder
 

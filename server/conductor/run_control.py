@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from server.control.prompts import Prompts, is_done
+from server.conductor.prompts import Prompts, is_done
 from server.reporter import Reporter
 from swarm.errors import in_words, nearest, one_line
 from swarm.geometry import Pose
