@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from swarm.errors import NO_ROOM, UserError
+from swarm.files import new_folder
 
 EXPERIMENT, MANIFEST = "experiment.toml", "manifest.json"
 
@@ -36,16 +37,7 @@ class RunDirectory:
     def create(cls, path: Path | None, name: str) -> RunDirectory:
         """A new directory; without a path the first free runs/NAME-001, -002 and so on."""
         chosen = path or _free(Path("runs"), name)
-        try:
-            chosen.parent.mkdir(parents=True, exist_ok=True)
-            chosen.mkdir()
-        except FileExistsError as error:
-            raise UserError(
-                f"{chosen}: exists already; nothing is overwritten, choose another --out"
-            ) from error
-        except OSError as error:
-            raise UserError(f"{chosen}: cannot be made ({error.strerror}); choose another --out") from error
-        return cls(chosen)
+        return cls(new_folder(chosen))
 
     @classmethod
     def reopened(cls, path: Path, trial: int) -> RunDirectory:

@@ -14,6 +14,7 @@ from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
 from swarm.cli.export import export_command
 from swarm.cli.info import info_command
+from swarm.cli.lab import lab_app
 from swarm.cli.recover import recover_command
 from swarm.cli.replay import replay_command
 from swarm.cli.reproduce import reproduce_command
@@ -59,6 +60,7 @@ app.command("check")(check_command)
 app.command("recover")(recover_command)
 app.command("replay")(replay_command)
 app.command("export")(export_command)
+app.add_typer(lab_app, name="lab")
 
 
 def _help_of(error: typer.TyperException) -> str:
