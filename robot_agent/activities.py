@@ -76,6 +76,8 @@ class Activity:
     """The cell that the robot stands in or is leaving."""
     name: ClassVar[str]
     """As the status message has it."""
+    under_way: ClassVar[bool] = False
+    """Whether a pause waits for its end."""
 
     def enter(self) -> None:
         """Called once, when the activity begins."""
@@ -128,7 +130,7 @@ class Waiting(BetweenMoves):
         self.task.motion.stop()
 
     def go_on(self, seen: Seen) -> Activity:
-        if self.task.is_at_home(seen.pose) and self.task.inbox.running(seen.t_ns):
+        if self.task.is_at_home(seen.pose) and self.task.inbox.running:
             return Returning(self.task, self._cell_to_go_on_from(seen.pose))
         return self
 
@@ -148,6 +150,7 @@ class Returning(BetweenMoves):
     """Driving to the start cell, or back to the cell that it stood in."""
 
     name = "returning"
+    under_way = True
 
     def enter(self) -> None:
         self.task.drive_to(self.state)
@@ -188,7 +191,7 @@ class Deciding(BetweenMoves):
     name = "deciding"
 
     def go_on(self, seen: Seen) -> Activity:
-        if not self.task.inbox.running(seen.t_ns):
+        if not self.task.inbox.running:
             return self
         action = self.task.policy.choose(self.state)
         entered = self.task.compartment.grid.neighbour(self.state, action)
@@ -201,6 +204,7 @@ class Deciding(BetweenMoves):
 class MoveUnderWay(Activity, ABC):
     """A choice under way, from the decision at `began_ns` until there is something to learn from it."""
 
+    under_way = True
     blocked: ClassVar[bool]
     action: int
     next_state: int
@@ -259,6 +263,7 @@ class Visiting(Activity):
     """Watching another robot, or being carried there and back."""
 
     name = "visiting"
+    under_way = True
     visit: Visit
 
     def enter(self) -> None:
@@ -287,8 +292,7 @@ class EmergencyStop(Activity):
         self.task.motion.stop()
 
     def decide(self, seen: Seen) -> Activity:  # noqa: ARG002
-        if self.task.inbox.latch.engaged:
-            return self
+        """Asked only once the emergency is released."""
         return Waiting(self.task, self.state, lost=True)
 
     def act(self, seen: Seen) -> Acted:  # noqa: ARG002

@@ -6,6 +6,7 @@ import socket
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -90,7 +91,8 @@ class Run:
         with self.environment(plan) as environment:
             played = self._assembled(environment, identity, file)
             try:
-                played.run()
+                with self._reached(environment):
+                    played.run()
             finally:
                 self.results.append(played.result())
 
@@ -117,6 +119,11 @@ class Run:
             self.progress.show,
             desk,
         )
+
+    def _reached(self, environment: TrialEnvironment) -> AbstractContextManager[None]:
+        """Where people find a run that they can steer."""
+        session = environment.session
+        return self.directory.reached_at(session.endpoint) if session else nullcontext()
 
     def _summary(self, wall_s: float) -> dict[str, Any]:
         logs = [log for trial in self.trials for log in self.directory.logs(trial)]

@@ -13,10 +13,8 @@ from swarm.errors import in_words, nearest, one_line
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.runtime.emergency_latch import EmergencyLatch
+from swarm.runtime.emergency_latch import EmergencyLatch, by
 
-LONGEST_REASON = 200
-"""Letters of what a person says beside an order: a line of the log."""
 Order = pb.OperatorOrder
 
 
@@ -77,7 +75,7 @@ class RunControl:
 
     def emergency(self, stop: pb.EmergencyStop) -> None:
         """The server has heard an emergency stop, as the robots have."""
-        reason = _by(stop.operator, stop.reason)
+        reason = by(stop.operator, stop.reason)
         if self._engaged(reason):
             self._reporter.event("estop", f"emergency stop by {reason}", pb.Event.ERROR)
 
@@ -99,7 +97,7 @@ class RunControl:
             return f"{', '.join(robots)} will stand after the move or visit under way"
         if self.paused:
             raise RefusedError("the run is paused already")
-        self.paused, self.reason = True, _by(order.operator, order.reason)
+        self.paused, self.reason = True, by(order.operator, order.reason)
         return "every robot will stand after the move or visit under way"
 
     def _resume(self, order: Order) -> str:
@@ -124,13 +122,14 @@ class RunControl:
         return f"{', '.join(going)} will go on{' once the run does' if self.paused else ''}"
 
     def _stop(self, order: Order) -> str:
-        self.stopped = self.reason = _by(order.operator, order.reason)
+        self.stopped = self.reason = by(order.operator, order.reason)
         return "the trial ends now; its log will be closed in order"
 
     def _estop(self, order: Order) -> str:
-        if not self._engaged(_by(order.operator, order.reason)):
-            return f"in force already, by {self._latch.reason}"
-        return "every wheel stands until the emergency is released"
+        reason = by(order.operator, order.reason)
+        self._engaged(reason)
+        before = "" if self._latch.reason == reason else f" (as {self._latch.reason} ordered before)"
+        return f"every wheel stands until the emergency is released{before}"
 
     def _engaged(self, reason: str) -> bool:
         """Whether this is a new emergency; it holds from now on, also for a server that goes on here."""
@@ -147,7 +146,7 @@ class RunControl:
     def _release(self, order: Order) -> str:
         """Also if nothing is in force here: a robot may have heard of an emergency that the server missed."""
         self._latch.release()
-        self.reason = _by(order.operator, "released, and paused until somebody resumes it")
+        self.reason = by(order.operator, "released, and paused until somebody resumes it")
         self.paused = True
         for robot in self._robots:
             self._reporter.publish(topics.ORDER, pb.Order(kind=pb.Order.RELEASE), robot)
@@ -175,9 +174,4 @@ def said(order: pb.OperatorOrder) -> str:
     """An order as the log tells of it."""
     what = [Order.Kind.Name(order.kind).lower(), *order.robots[:10]]
     what += [f"prompt {order.prompt}"] if order.prompt else []
-    return f"{' '.join(one_line(word, 32) for word in what)} by {_by(order.operator, order.reason)}"
-
-
-def _by(operator: str, reason: str) -> str:
-    who = one_line(operator, 64) or "somebody"
-    return f"{who} ({one_line(reason, LONGEST_REASON)})" if reason else who
+    return f"{' '.join(one_line(word, 32) for word in what)} by {by(order.operator, order.reason)}"

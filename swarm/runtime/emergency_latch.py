@@ -5,6 +5,17 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from swarm.errors import one_line
+
+LONGEST_NAME, LONGEST_REASON = 64, 200
+"""Letters of what a person says beside an order: together a line of the log."""
+
+
+def by(operator: str, reason: str) -> str:
+    """Who ordered something, and why if they said it."""
+    who = one_line(operator, LONGEST_NAME) or "somebody"
+    return f"{who} ({one_line(reason, LONGEST_REASON)})" if reason else who
+
 
 class EmergencyLatch:
     """One file: while it is there the emergency is in force, whatever stands in it.

@@ -5,8 +5,9 @@ from __future__ import annotations
 import getpass
 import socket
 import time
-from typing import TypeVar
+from typing import Any, TypeVar
 
+from google.protobuf.json_format import MessageToDict
 from google.protobuf.message import Message
 
 from swarm.clock import unix_clock
@@ -53,6 +54,11 @@ def ask_status(session: Session) -> pb.RunStatus:
         if answers := session.ask(RUN_STATUS, ANSWER_WITHIN_S):
             break
     return _read(pb.RunStatus, answers)
+
+
+def status_as_json(status: pb.RunStatus) -> dict[str, Any]:
+    """A status by the names of its fields, for programs; times in nanoseconds are texts, as JSON wants it."""
+    return MessageToDict(status, preserving_proto_field_name=True, always_print_fields_with_no_presence=True)
 
 
 def publish_estop(session: Session, order: pb.OperatorOrder) -> None:

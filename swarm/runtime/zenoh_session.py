@@ -150,6 +150,7 @@ class Session:
         import zenoh
 
         zenoh.init_log_from_env_or("error")
+        self.endpoint = settings.endpoint
         self._zenoh = zenoh
         self._tokens: list[zenoh.LivelinessToken] = []
         self._listening: list[zenoh.Subscriber[None]] = []

@@ -2,47 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
-from swarm.clock import unix_clock
 from swarm.messages import swarm_pb2 as pb
-from swarm.runtime.operating import ask_status, send_order
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.laboratory import Laboratory
-
-Order = pb.OperatorOrder
-
-
-class Operator:
-    """A person with a session."""
-
-    def __init__(self, session: Session) -> None:
-        self.session = session
-
-    def orders(self, kind: Order.Kind.ValueType, *robots: str, reason: str = "") -> pb.OrderAnswer:
-        order = Order(kind=kind, operator="anna@lab", reason=reason, robots=robots)
-        return send_order(self.session, order)
-
-    def waits_until(self, condition: Callable[[pb.RunStatus], bool]) -> pb.RunStatus:
-        """Ask until the run is as wanted."""
-        for _ in unix_clock().ticks(0.1):
-            status = ask_status(self.session)
-            if condition(status):
-                return status
-        raise AssertionError
+from tests.support.operator import Operator, Order, all_are, moves
 
 
 @pytest.fixture
 def laboratory(tmp_path: Path) -> Iterator[Laboratory]:
-    """Two learners, a tracker bridge and a server."""
+    """Two learners' laboratory in which nothing runs yet."""
     with ExitStack() as stack:
-        found = Laboratory(tmp_path, stack, count=2)
-        found.server = found.serve()
-        yield found
+        yield Laboratory(tmp_path, stack, count=2)
 
 
 @pytest.fixture
@@ -51,16 +27,9 @@ def operator(laboratory: Laboratory) -> Iterator[Operator]:
         yield Operator(session)
 
 
-def moves(status: pb.RunStatus) -> int:
-    return sum(robot.moves for robot in status.robots)
-
-
-def all_are(activity: str) -> Callable[[pb.RunStatus], bool]:
-    return lambda status: all(robot.activity == activity for robot in status.robots)
-
-
 def test_a_run_from_waiting_to_stopped(laboratory: Laboratory, operator: Operator) -> None:
-    waiting = operator.waits_until(lambda status: True)
+    server = laboratory.serve()
+    waiting = operator.sees()
     assert waiting.phase == pb.RunState.PREPARING
     assert list(waiting.missing) == ["r0", "r1", "the tracker bridge"]
     laboratory.track()
@@ -73,7 +42,6 @@ def test_a_run_from_waiting_to_stopped(laboratory: Laboratory, operator: Operato
     paused = operator.waits_until(lambda status: status.phase == pb.RunState.PAUSED)
     assert paused.reason == "anna@lab (lunch)"
     assert operator.orders(Order.PAUSE).text == "the run is paused already"
-    print(paused)
     assert operator.orders(Order.RESUME).accepted
     operator.waits_until(lambda status: moves(status) > moves(paused) + 2)
     assert operator.orders(Order.ESTOP, reason="a hand").accepted
@@ -87,5 +55,5 @@ def test_a_run_from_waiting_to_stopped(laboratory: Laboratory, operator: Operato
     assert operator.orders(Order.RESUME).accepted
     operator.waits_until(lambda status: moves(status) > moves(stopped) + 2)
     assert operator.orders(Order.STOP, reason="enough").accepted
-    laboratory.server.communicate()
-    assert laboratory.server.returncode == 0
+    server.communicate()
+    assert server.returncode == 0
