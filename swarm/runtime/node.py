@@ -15,6 +15,7 @@ from swarm.messages.header import Header
 from swarm.messages.topics import ACCOUNT, Delivery, Topic
 from swarm.runtime.account import pack_account
 from swarm.runtime.clock_offset import ClockOffset, described
+from swarm.runtime.link_lag import LinkLag
 from swarm.runtime.liveliness import ALIVE_SERVER, ServerWatch
 from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Inbox, Publisher, Session
@@ -41,6 +42,9 @@ class Node(Protocol):
 
     def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:
         """What to add to the times that a topic's sender writes, to have them on this process's clock."""
+
+    def lag_s(self) -> float:
+        """Real seconds by which this process is behind what others send; 0 where time is a message."""
 
     def run(self, step: Step) -> None:
         """Step at every tick, until the run ends.
@@ -117,6 +121,7 @@ class LiveNode:
         self._clock = clock
         self._period_s = period_s
         self._live = LivePublisher(session, clock, epoch)
+        self._lag = LinkLag(clock.speed)
         self._inboxes: list[tuple[Inbox, Subscription[Any]]] = []
         self.keys_received: set[str] = set()
         self._run_states = self.subscribe(topics.RUN_STATE)
@@ -134,6 +139,9 @@ class LiveNode:
     def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:
         known = self._clocks.get(topic.key(robot))
         return known[1].ns if known else 0
+
+    def lag_s(self) -> float:
+        return self._lag.seconds(self._clock.now_ns())
 
     def give_account(self, name: str) -> None:
         """Tell the server, as the last thing, how many messages of each key this process has sent."""
@@ -169,6 +177,7 @@ class LiveNode:
         """A header whose time is on this clock. (A sender's clock cannot step: only its epochs differ.)"""
         if header is None:
             return None
+        self._lag.heard(header.epoch, header.t_ns, self._clock.now_ns())
         epoch, clock = self._clocks.get(key, (0, None))
         if clock is None or epoch != header.epoch:
             clock = ClockOffset(self._clock.speed, can_step=False)
