@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from swarm.clock import NS_PER_S
 
 DRIFT = 1e-4
-"""Two quartz clocks differ by at most 100 parts in a million. More delay is the link's, however long it lasts."""
+"""Two quartz clocks differ by at most 100 parts in a million. More delay is the link's, and stays so."""
 
 
 @dataclass

@@ -98,11 +98,12 @@ def test_it_is_latched_over_a_restart_of_any_process(tmp_path: Path, stack: Exit
     began_ns = laboratory.now_ns()
     assert operator.orders(Order.ESTOP).accepted
     operator.waits_until(all_are("estopped"))
-    for process, again in (
+    restarts: list[tuple[subprocess.Popen[bytes], Callable[[], object]]] = [
         (agent, lambda: laboratory.agent("r0")),
         (tracker, laboratory.track),
         (server, lambda: laboratory.serve(resume=True)),
-    ):
+    ]
+    for process, again in restarts:
         process.kill()
         process.wait()
         again()
