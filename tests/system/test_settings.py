@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import itertools
 import json
+import random
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
@@ -34,8 +34,8 @@ TABLES = {
 }
 NOT_ALONE = {"width_m", "height_m"}
 """The floor must hold the compartments: only those are smaller or larger here."""
-HARD = {"body", "tracker", "simulation"}
-"""The tables whose faults add up."""
+NEIGHBOURS = 4
+"""On either side: each end is tried with eight others, in 246 of the 1,860 pairs."""
 MOVES = 6
 
 
@@ -98,13 +98,18 @@ def test_every_end_of_every_range_works(setting: Setting, tmp_path: Path) -> Non
 
 
 def pairs() -> list[tuple[Setting, Setting]]:
-    hard = [setting for setting in ends() if setting[0] in HARD and setting[1] != "processes"]
-    return [(one, two) for one, two in itertools.combinations(hard, 2) if one[:2] != two[:2]]
+    """Each end with its neighbours in a ring into which chance put them all."""
+    ring = ends()
+    random.Random(4).shuffle(ring)
+    neighbours = [
+        (one, ring[(place + distance) % len(ring)])
+        for distance in range(1, NEIGHBOURS + 1)
+        for place, one in enumerate(ring)
+    ]
+    return [(one, other) for one, other in neighbours if one[:2] != other[:2]]
 
 
 @pytest.mark.faults
 @pytest.mark.parametrize("pair", pairs(), ids=str)
-def test_faults_at_the_ends_of_their_ranges_work_together(
-    pair: tuple[Setting, Setting], tmp_path: Path
-) -> None:
+def test_pairs_of_ends_work(pair: tuple[Setting, Setting], tmp_path: Path) -> None:
     check(tmp_path, *pair)
