@@ -18,6 +18,7 @@ from swarm.checkup.machine import writable
 from swarm.config.arguments import place
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, guarded, nearest
+from swarm.extras import naming_extras
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
@@ -48,6 +49,7 @@ TOOLS = {
 """The first words of the command line, and MODULE:FUNCTION of the tool, whose parser is FUNCTION_parser."""
 
 
+@naming_extras()
 def _called(words: list[str]) -> None:
     """A tool if the first words name one, and else a robot; only what is called is loaded."""
     for name, tool_place in TOOLS.items():
@@ -72,7 +74,7 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.supervised:
         leave_with_parent()
     with joined(arguments, "robot", names, experiment.simulation.tick_s, identity) as node:
-        place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
+        place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep, arguments.state)
         assembly = Assembly(experiment, node, arguments.trial, place)
         agents = [assembly.agent(name) for name in names]
         if arguments.state:
@@ -101,8 +103,11 @@ def _go_on(agent: Agent, name: str, arguments: argparse.Namespace, run_id: str, 
 
 
 def _step(agents: list[Agent], t_ns: int) -> None:
+    """All wheels stand before the disk is waited for."""
     for agent in agents:
         agent.step(t_ns)
+    for agent in agents:
+        agent.keep_emergency()
 
 
 def _write_keys(file: Path, keys_received: set[str]) -> None:
