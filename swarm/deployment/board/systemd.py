@@ -27,7 +27,7 @@ class Systemd:
         known = settings.read_bytes() if settings.exists() else b""
         if CHRONY_FOLDER.is_dir() and clock.read_bytes() != known:
             run([*self._sudo, "install", "-m", "644", str(clock), str(settings)])
-            self._ask("restart", "chrony")
+            self._ask("try-restart", "chrony")
 
     def restart(self, name: str) -> None:
         """Start a service anew, also after the machine's next start."""
