@@ -30,10 +30,11 @@ class Systemd:
             self._ask("try-restart", "chrony")
 
     def restart(self, name: str) -> None:
-        """Start a service anew, also after the machine's next start."""
+        """Start a service anew, also after the machine's next start; what becomes of it its state tells."""
         self._ask("enable", "--quiet", name)
         self._ask("reset-failed", "--quiet", name)
-        self._ask("restart", "--no-block", name)
+        words = [*self._sudo, "systemctl", "restart", name]
+        subprocess.run(words, capture_output=True, check=False, stdin=subprocess.DEVNULL)
 
     def stop(self, name: str) -> None:
         """End a service for good."""
