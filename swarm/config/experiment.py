@@ -138,8 +138,8 @@ class TrackerSettings:
     """How far the system's east is turned, counter-clockwise, from the arena's."""
     rate_hz: Annotated[float, Between(1, 1000)] = 10.0
     """Poses of each robot a second; a robot stands when the last is 1 s old."""
-    noise_m: Annotated[float, Between(0, 0.05)] = 0.001
-    """Standard deviation of x and of y."""
+    noise_m: Annotated[float, Between(0, 0.02)] = 0.001
+    """Standard deviation of x and of y; with more, poses look as if somebody carried the robot."""
     noise_rad: Annotated[float, Between(0, 1)] = 0.0087
     """Standard deviation of the heading."""
     latency_s: Annotated[float, Between(0, 0.5)] = 0.06
