@@ -13,6 +13,7 @@ from swarm.messages.topics import NO_ROBOT, is_id
 if TYPE_CHECKING:
     from swarm.config.experiment import Experiment, RobotSettings
 
+SECONDS_PER_HOUR = 3600
 _ID_RULE = "an id starts with a small letter and has at most 32 of a-z, 0-9, _ and -"
 
 
@@ -22,8 +23,19 @@ def check_consistency(experiment: Experiment, file: ConfigFile) -> None:
         raise file.error(("run", "name"), f"'name' is {experiment.run.name!r}; {_ID_RULE}")
     if not experiment.learners:
         raise file.error(("robot", 0, "role"), "no robot is a learner: there is nothing to learn or to plot")
+    _check_blackouts(experiment, file)
     for number, robot in enumerate(experiment.robot):
         _check_robot(experiment, number, robot, file)
+
+
+def _check_blackouts(experiment: Experiment, file: ConfigFile) -> None:
+    tracker = experiment.tracker
+    if tracker.blackouts_per_hour * tracker.blackout_s > SECONDS_PER_HOUR:
+        raise file.error(
+            ("tracker", "blackout_s"),
+            f"{tracker.blackouts_per_hour:g} losses an hour of {tracker.blackout_s:g} s each are more than "
+            "the hour: a robot would be seen for hardly a moment; make them fewer or shorter",
+        )
 
 
 def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
