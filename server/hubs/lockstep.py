@@ -93,7 +93,7 @@ class LockstepHub:
                 raise RunFailedError(f"{', '.join(missing)} did not start within {GREETED_WITHIN_S:g} s")
             if now_s - named_s > GREETING_NAMED_AFTER_S:
                 named_s = now_s
-                self._warn(f"{', '.join(missing)} has not started yet")
+                self._warn(f"still waiting for {', '.join(missing)} to start")
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         key = topic.key(robot)

@@ -329,7 +329,7 @@ def test_a_process_that_never_comes_is_named(swarm: Swarm) -> None:
     with pytest.raises(RunFailedError, match="b did not start within 300 s"):
         hub.start()
     hub.finish()
-    assert said[-1] == "b has not started yet"
+    assert said[-1] == "still waiting for b to start"
 
 
 def test_a_silent_process_is_warned_of_and_given_up(swarm: Swarm) -> None:
