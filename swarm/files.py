@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import csv
-import errno
 import json
 import os
-import shutil
 from collections.abc import Callable, Iterable, Sequence
 from io import BufferedWriter, TextIOWrapper
 from pathlib import Path
@@ -15,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 from swarm.errors import RunFailedError, UserError
 
 if TYPE_CHECKING:
-    import polars as pl
     from matplotlib.figure import Figure
 
 
@@ -32,6 +29,26 @@ def new_file(path: Path) -> BufferedWriter:
         raise UserError(f"{path}: exists already; nothing is overwritten, choose another --out") from error
     except OSError as error:
         raise UserError(f"{path}: cannot be written ({error.strerror}); choose another --out") from error
+
+
+def new_folder(path: Path) -> Path:
+    """Make a folder, and those above it; UserError if it is there already or cannot be made."""
+    try:
+        path.mkdir(parents=True)
+    except FileExistsError as error:
+        raise UserError(f"{path}: exists already; nothing is overwritten, choose another --out") from error
+    except OSError as error:
+        raise UserError(f"{path}: cannot be made ({error.strerror}); choose another --out") from error
+    return path
+
+
+def make_folder(path: Path) -> Path:
+    """A folder, which may be there already; UserError if it cannot be made."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be made ({error.strerror}); choose another --out") from error
+    return path
 
 
 def new_csv(path: Path, told: Iterable[str], columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
@@ -64,36 +81,9 @@ def write_text(text: str, path: Path) -> Path:
     return write_whole(path, lambda temporary: temporary.write_bytes(data))
 
 
-FULL_BYTES = 4096
-"""A disk with less than a block of this size takes no file."""
-
-
 def write_json(content: Any, path: Path) -> Path:
     """Plain data, whole; ValueError for a number that JSON does not know."""
     return write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", path)
-
-
-def write_table(table: pl.DataFrame, path: Path) -> Path:
-    """A table, whole: as text if the name ends in .csv, else as Parquet."""
-    return write_whole(path, table.write_csv if path.suffix == ".csv" else as_parquet(table))
-
-
-def as_parquet(table: pl.DataFrame | pl.LazyFrame, **options: Any) -> Callable[[Path], None]:
-    """Writes a table into a file; OSError if the disk does not take it, for which polars has other words."""
-    import polars as pl
-
-    def write(path: Path) -> None:
-        try:
-            if isinstance(table, pl.LazyFrame):
-                table.sink_parquet(path, **options)
-            else:
-                table.write_parquet(path, **options)
-        except pl.exceptions.ComputeError as error:
-            is_full = shutil.disk_usage(path.parent).free < FULL_BYTES
-            number = errno.ENOSPC if is_full else errno.EIO
-            raise OSError(number, os.strerror(number), str(path)) from error
-
-    return write
 
 
 PICTURE_DPI = 150

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import polars as pl
 
-from swarm.files import as_parquet, write_whole
+from swarm.files import write_whole
 from swarm.logs.completeness import HealthTable
 from swarm.logs.episodes import journeys, visits
 from swarm.logs.identity import LogIdentity
@@ -28,6 +28,7 @@ from swarm.logs.tables import (
 )
 from swarm.logs.trial_logs import as_one
 from swarm.logs.units import parquet_metadata
+from swarm.table_files import as_parquet
 
 ROWS_IN_MEMORY = 500_000
 """Of a table: some 60 MB of the widest."""

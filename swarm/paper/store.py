@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from swarm.errors import RunFailedError, UserError
-from swarm.files import as_parquet, write_json, write_whole
+from swarm.files import write_json, write_whole
 from swarm.gridworld.condition import Condition
+from swarm.table_files import as_parquet
 
 if TYPE_CHECKING:
     import polars as pl

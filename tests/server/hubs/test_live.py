@@ -39,7 +39,13 @@ class Laboratory:
         """What the hub looks at while it waits."""
         self._identity = RunIdentity.of(experiment, 0, "0123456789ab")
         self.hub = LiveHub(
-            hub_session, unix_clock(), experiment, self._identity, lambda: self.check(), self.said.append
+            hub_session,
+            unix_clock(),
+            experiment,
+            self._identity,
+            lambda: self.check(),
+            self.said.append,
+            epoch=1,
         )
 
     def joins(self, kind: str, name: str, epoch: int = 1, identity: str = "") -> Session:
