@@ -17,7 +17,7 @@ from server.processes.environment import Environment, laboratory, require_emulat
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
-from swarm.access.zenoh_rules import limits
+from swarm.access.zenoh_rules import hub_limits
 from swarm.checkup.checkup import experiment_findings, findings
 from swarm.checkup.finding import Level, require_good
 from swarm.checkup.machine import room, writable
@@ -49,7 +49,7 @@ def conduct(asked: argparse.Namespace) -> None:
         )
         if asked.listen:
             robots = [robot.id for robot in plan.experiment.robot]
-            settings = session_settings(asked, asked.listen, hub=True, limits=limits(robots))
+            settings = session_settings(asked, asked.listen, hub=True, limits=hub_limits(robots))
             session = open_session.enter_context(Session(settings))
             trials = [plan.trial]
             _warn_of_bad(plan.experiment, progress)

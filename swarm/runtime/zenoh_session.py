@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 ONE_THREAD = (
     "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
 )
-"""Three threads in place of seven, and a lockstep of ten processes a fifth faster (measured)."""
+"""Three threads in place of seven, and a lockstep of ten processes a fifth faster (measured). A hub that
+strangers reach keeps the seven: with one, who makes it wait would make everybody wait."""
 QUEUE_DEPTH = 65_536
 """Messages; fifty robots send some thousand a second: room for more than half a minute."""
 NEWEST_KEPT = 64
@@ -123,7 +124,8 @@ class Session:
     """
 
     def __init__(self, settings: SessionSettings, waiting: Callable[[], None] = lambda: None) -> None:
-        os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
+        if not settings.limits:
+            os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
         import zenoh
 
         zenoh.init_log_from_env_or("error")
