@@ -11,6 +11,7 @@ import json
 import os
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -146,10 +147,14 @@ class Session:
         self.close()
 
     def close(self) -> None:
-        """Undeclare everything and leave; presence tokens vanish for the others."""
+        """Undeclare everything and leave; presence tokens vanish for the others.
+
+        Zenoh gives up after a while if another side does not read: there is nothing that is left to do then.
+        """
         atexit.unregister(self.close)
         if not self._session.is_closed():
-            self._session.close()  # type: ignore[no-untyped-call]
+            with suppress(self._zenoh.ZError):
+                self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str, delivery: Delivery) -> Publisher:
         """A publisher with the delivery's guarantees."""
