@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from swarm.control.reaching import ENDPOINT
 from swarm.errors import NO_ROOM, UserError
 from swarm.files import new_folder
 
@@ -83,6 +84,21 @@ class RunDirectory:
     def output(self, trial: int) -> Path:
         """Where the processes of a trial print to."""
         return self.path / "output" / trial_name(trial)
+
+    @property
+    def emergency(self) -> Path:
+        """There while an emergency stop is in force."""
+        return self.path / "estop"
+
+    @contextmanager
+    def reached_at(self, endpoint: str) -> Iterator[None]:
+        """Say where the server listens, for as long as it does."""
+        file = self.path / ENDPOINT
+        file.write_text(f"{endpoint}\n", encoding="utf-8")
+        try:
+            yield
+        finally:
+            file.unlink(missing_ok=True)
 
     def reserve(self) -> None:
         """Take room now for what is written once there is none: how the run ended."""

@@ -16,12 +16,8 @@ from swarm.clock import NS_PER_S, unix_clock
 from swarm.errors import RunFailedError, UserError
 from swarm.messages import topics
 from swarm.messages.header import Header
-from swarm.runtime.process import (
-    DEFAULT_ENDPOINT,
-    OneLineParser,
-    add_protection_arguments,
-    session_settings,
-)
+from swarm.runtime.endpoint import DEFAULT_ENDPOINT
+from swarm.runtime.process import OneLineParser, add_protection_arguments, session_settings
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from swarm.signals import leave_on_signals
 

@@ -75,7 +75,11 @@ class LiveHub:
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
 
-    def start(self) -> None:
+    @property
+    def missing(self) -> list[str]:
+        return self._attendance.missing
+
+    def start(self, meanwhile: Callable[[], None] = lambda: None) -> None:
         """Wait until every robot of the experiment and a tracker are there; name those that are missing.
 
         What they send meanwhile is taken in, or Zenoh would have to wait; of it only what must not be lost
@@ -83,8 +87,9 @@ class LiveHub:
         """
         named_s = time.monotonic()
         self._attendance.look()
-        while missing := self._attendance.missing:
+        while missing := self.missing:
             self._check()
+            meanwhile()
             next(self._ticks)
             self._early.extend(item for item in self._received() if _must_not_be_lost(item.key))
             if time.monotonic() - named_s > NAMED_EVERY_S:
@@ -104,14 +109,13 @@ class LiveHub:
         t_ns = next(self._ticks)
         if not self._ended:
             self._check()
-        items = [*self._early, *self._received()]
-        self._early.clear()
+        items = self._waiting()
         self._clocks.step(items, self._clock.now_ns())
         return Batch(t_ns, items)
 
     def unsent(self) -> Batch:
         """What has arrived by now, and what the server has said."""
-        return Batch(self._clock.now_ns(), self._received())
+        return Batch(self._clock.now_ns(), self._waiting())
 
     def finish(self) -> Batch:
         """The run's state ENDED has told the processes already: wait until they have given account."""
@@ -145,6 +149,12 @@ class LiveHub:
         self.publish(topics.SERVER_EVENT, pb.Event(level=level, name=name, text=text))
         if level != pb.Event.INFO:
             self._warn(text)
+
+    def _waiting(self) -> list[Item]:
+        """What no batch has held yet: from before the trial began, and what has come since the last."""
+        items = [*self._early, *self._received()]
+        self._early.clear()
+        return items
 
     def _received(self) -> list[Item]:
         """A sender's presence arrives before its first message, and so is looked at after the messages."""

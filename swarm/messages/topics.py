@@ -1,8 +1,8 @@
 """One table of everything on the wire: readers, recorder, health and the documentation use it.
 
 A robot's name stands in its keys and nowhere else, so a message cannot claim another sender. A robot
-receives its own pose, its own orders and the run's state (`to_robot`): the paper's rule that nothing
-but what the camera sees crosses from one robot to another can be read off this table.
+receives its own pose, its own orders, the run's state and an emergency stop (`to_robot`): the paper's rule
+that nothing but what the camera sees crosses from one robot to another can be read off this table.
 """
 
 from __future__ import annotations
@@ -32,6 +32,8 @@ class Delivery(Enum):
     """Reliable while there is room, only the newest counts: poses, commands, states."""
     BULK = "bulk"
     """Dropped first: images."""
+    URGENT = "urgent"
+    """Ahead of everything, said again and again, nobody waits for one who does not listen: emergencies."""
 
 
 class Role(Enum):
@@ -109,6 +111,16 @@ ORDER = Topic(
 RUN_STATE = Topic(
     "run/state", pb.RunState, "phase and trial", 1.0, Delivery.NEWEST, True, to_robot=True, sender=Role.SERVER
 )
+ESTOP = Topic(
+    "operator/estop",
+    pb.EmergencyStop,
+    "all wheels stop at once",
+    None,
+    Delivery.URGENT,
+    False,
+    to_robot=True,
+    sender=Role.OPERATOR,
+)
 COMMAND = Topic(
     "robot/{robot}/command", pb.Command, "wheel speeds as sent, pose believed", 10.0, Delivery.NEWEST, True
 )
@@ -155,6 +167,7 @@ TABLE: tuple[Topic[Any], ...] = (
     POSE,
     ORDER,
     RUN_STATE,
+    ESTOP,
     COMMAND,
     MOVE,
     BEST_PATH,
@@ -182,8 +195,14 @@ NO_ROBOT = {topic.pattern.split("/")[0] for topic in TABLE if "{robot}" not in t
 """What the tables of a log call those who are no robot: no robot may be called so. `view` is the server's."""
 RUN_IDENTITY = "run/identity"
 """Asked, not published: the server answers with the run's id and every setting."""
+RUN_STATUS = "run/status"
+"""Asked: the server answers with a `RunStatus`."""
+OPERATOR_ORDER = "operator/order"
+"""Asked with an `OperatorOrder`: the server obeys or refuses, and answers with an `OrderAnswer`."""
 ASKED_BY: Mapping[str, tuple[Role, ...]] = {
     RUN_IDENTITY: (Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER),
+    RUN_STATUS: (Role.OPERATOR, Role.VIEWER),
+    OPERATOR_ORDER: (Role.OPERATOR,),
 }
 """Who may ask the server for what."""
 

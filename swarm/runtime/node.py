@@ -16,6 +16,7 @@ from swarm.messages.header import Header, Item
 from swarm.messages.topics import ACCOUNT, Delivery, Topic, topic_of
 from swarm.runtime.account import pack_account
 from swarm.runtime.clock_offset import ClockOffset, described
+from swarm.runtime.link_lag import LinkLag
 from swarm.runtime.liveliness import ALIVE_SERVER, ServerWatch
 from swarm.runtime.senders import BelievedSenders
 from swarm.runtime.subscription import Subscription
@@ -47,6 +48,9 @@ class Node(Protocol):
 
     def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:
         """What to add to the times that a topic's sender writes, to have them on this process's clock."""
+
+    def lag_s(self) -> float:
+        """Real seconds by which this process is behind what others send; 0 where time is a message."""
 
     def run(self, step: Step) -> None:
         """Step at every tick, until the run ends.
@@ -116,8 +120,10 @@ class LiveNode:
         epoch: int,
         run_id: str = "",
         say: Callable[[str], None] = lambda text: None,  # noqa: ARG005
+        going_on: Callable[[], None] = lambda: None,
     ) -> None:
         self.run_id = run_id
+        self._going_on = going_on
         self._session = session
         self._say = say
         self._server = ServerWatch(session.presence_watch(ALIVE_SERVER), say)
@@ -126,6 +132,7 @@ class LiveNode:
         self._clock = clock
         self._period_s = period_s
         self._live = LivePublisher(session, clock, epoch)
+        self._lag = LinkLag(clock.speed)
         self._inboxes: list[tuple[Inbox, Subscription[Any], deque[WireSample]]] = []
         self.keys_received: set[str] = set()
         self._run_states = self.subscribe(topics.RUN_STATE)
@@ -145,12 +152,16 @@ class LiveNode:
         known = self._clocks.get(topic.key(robot))
         return known[1].ns if known else 0
 
+    def lag_s(self) -> float:
+        return self._lag.seconds(self._clock.now_ns())
+
     def give_account(self, name: str) -> None:
         """Tell the server, as the last thing, how many messages of each key this process has sent."""
         self._live.give_account(name)
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):
+            self._going_on()
             self._server.look()
             self._take_in()
             states = [state.message for state in self._run_states.take()]
@@ -190,6 +201,7 @@ class LiveNode:
         """A header whose time is on this clock. (A sender's clock cannot step: only its epochs differ.)"""
         if header is None:
             return None
+        self._lag.heard(header.epoch, header.t_ns, self._clock.now_ns())
         epoch, clock = self._clocks.get(key, (0, None))
         if clock is None or epoch != header.epoch:
             clock = ClockOffset(self._clock.speed, can_step=False)
