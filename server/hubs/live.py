@@ -120,6 +120,7 @@ class LiveHub:
 
     def finish(self) -> Batch:
         """The run's state ENDED has told the processes already: wait until they have given account."""
+        self._attendance.look()
         there = [one.epoch for kind in ("robot", "tracker") for one in present(self._session, kind)]
         leaving = {epoch for epoch in there if self._admission.knows(epoch)}
         deadline_s = time.monotonic() + LAST_WORDS_S
