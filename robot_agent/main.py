@@ -63,12 +63,14 @@ def _called(words: list[str]) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and step the robots until the run ends or the process is told to leave."""
     experiment = load_experiment(arguments)
+    identity = RunIdentity.of(experiment, arguments.trial)
+    if arguments.calibration:
+        experiment = experiment.seen_by(arguments.calibration)
     names = _names(arguments.robot, experiment)
     _check(arguments, experiment, names)
     leave_on_signals()
     if arguments.supervised:
         leave_with_parent()
-    identity = RunIdentity.of(experiment, arguments.trial)
     with joined(arguments, "robot", names, experiment.simulation.tick_s, identity) as node:
         place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep, arguments.state)
         assembly = Assembly(experiment, node, arguments.trial, place)
@@ -140,6 +142,12 @@ def _parser() -> OneLineParser:
     add_common_arguments(parser)
     parser.add_argument("--robot", default="", metavar="ID[,ID...]", help="which robot this is")
     add_address_argument(parser)
+    parser.add_argument(
+        "--calibration",
+        type=place,
+        metavar="FILE",
+        help="this board's camera, in place of the experiment's calibration",
+    )
     parser.add_argument(
         "--state",
         type=place,

@@ -27,6 +27,7 @@ from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.runtime.process import OneLineParser, add_protection_arguments, session_settings
 from swarm.runtime.zenoh_session import Session
+from swarm.services.notification import ServiceManager
 from swarm.signals import leave_on_signals
 
 RUN_ID_BYTES = 6
@@ -51,9 +52,11 @@ def conduct(asked: argparse.Namespace) -> None:
             robots = [robot.id for robot in plan.experiment.robot]
             settings = session_settings(asked, asked.listen, hub=True, limits=limits(robots))
             session = open_session.enter_context(Session(settings))
+            manager = ServiceManager.of_environment()
+            manager.ready()
             trials = [plan.trial]
             _warn_of_bad(plan.experiment, progress)
-            environment = partial(laboratory, plan.experiment, session, progress.warn)
+            environment = partial(laboratory, plan.experiment, session, progress.warn, manager.going_on)
         directory = plan.directory or RunDirectory.create(asked.out, plan.experiment.run.name)
         run = Run(plan.experiment, plan.file, directory, environment, trials, progress, plan.run_id)
         summary = run.run()

@@ -167,12 +167,16 @@ def laboratory(
     experiment: Experiment,
     session: Session,
     warn: Warn,
+    going_on: Callable[[], None],
     plan: TrialPlan,
 ) -> Iterator[TrialEnvironment]:
-    """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
+    """Robots and a tracker bridge that others start: the server waits for them, and people carry robots.
+
+    They are not ours to check: who is missing shows by presence and health. `going_on` is called every tick.
+    """
     presence = _presence(plan.identity)
     claim(session, presence)
-    hub = LiveHub(session, unix_clock(), experiment, plan.identity, _nothing_to_check, warn, presence.epoch)
+    hub = LiveHub(session, unix_clock(), experiment, plan.identity, going_on, warn, presence.epoch)
     reporter = Reporter(hub)
     prompts = Prompts()
     carrier, flush_every = Operator(reporter, warn, prompts), _live_flush(experiment, 1.0)
@@ -185,7 +189,3 @@ def _presence(identity: RunIdentity) -> Presence:
 
 def _live_flush(experiment: Experiment, speed: float) -> int:
     return max(1, round(LIVE_FLUSH_S * speed / experiment.simulation.tick_s))
-
-
-def _nothing_to_check() -> None:
-    """The laboratory's processes are not ours: who is missing shows by presence and health."""

@@ -307,6 +307,10 @@ class Experiment:
             simulation = replace(simulation, processes=processes)
         return replace(self, run=run, simulation=simulation)
 
+    def seen_by(self, calibration: Path) -> Experiment:
+        """The same experiment for a board whose camera is calibrated by a file of its own."""
+        return replace(self, camera=replace(self.camera, calibration=str(calibration)))
+
     def compartment(self, robot: RobotSettings) -> Compartment:
         """The walled square that belongs to a robot."""
         grid = Grid(self.arena.columns, self.arena.rows)

@@ -149,8 +149,8 @@ class Publisher:
 class Session:
     """A Zenoh session, closed at the end of its block or of the process.
 
-    To open one may take for ever where the server is not there yet: `waiting` is called once if it takes
-    longer than a moment, and signals are obeyed meanwhile.
+    To open one may take for ever where the server is not there yet: `waiting` is called once a second
+    meanwhile, and signals are obeyed.
     """
 
     def __init__(self, settings: SessionSettings, waiting: Callable[[], None] = lambda: None) -> None:
