@@ -17,6 +17,7 @@ from swarm.checkup.machine import writable
 from swarm.config.arguments import place
 from swarm.config.experiment import Experiment, RobotSettings
 from swarm.errors import UserError, guarded, nearest
+from swarm.extras import naming_extras
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
@@ -48,6 +49,7 @@ TOOLS = {
 """The first words of the command line, and MODULE:FUNCTION of the tool, whose parser is FUNCTION_parser."""
 
 
+@naming_extras()
 def _called(words: list[str]) -> None:
     """A tool if the first words name one, and else a robot; only what is called is loaded."""
     for name, tool_place in TOOLS.items():

@@ -13,7 +13,13 @@ from pathlib import Path
 from rich.console import Console
 
 from server.interrupted_run import InterruptedRun
-from server.processes.environment import Environment, laboratory, require_emulation, simulated
+from server.processes.environment import (
+    Environment,
+    laboratory,
+    require_emulation,
+    require_tracker,
+    simulated,
+)
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
@@ -100,6 +106,7 @@ def _check(asked: argparse.Namespace, experiment: Experiment) -> None:
     else:
         require_good(asked.experiment, findings(experiment, asked.out))
         require_emulation(experiment, asked.speed, emulate=asked.emulate)
+        require_tracker(experiment, asked.speed)
 
 
 def _refuse_speed(asked: argparse.Namespace) -> None:

@@ -26,6 +26,7 @@ from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import REAL_LINKS, Experiment
 from swarm.errors import UserError
 from swarm.parallel import available_cores
+from swarm.plugins import TRACKERS, plugins
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import patient
@@ -119,6 +120,16 @@ def require_emulation(experiment: Experiment, speed: float | None, *, emulate: b
         raise UserError("--emulate needs --speed X: bytes on a link take their own time")
     if emulate and not real:
         raise UserError(f"--emulate: no robot's driver is one of {', '.join(REAL_LINKS)}")
+
+
+def require_tracker(experiment: Experiment, speed: float | None) -> None:
+    """UserError for a tracking system that goes by a time of its own, which a lockstep does not wait for."""
+    name = experiment.tracker.backend
+    if speed is None and plugins(TRACKERS)[name].load().poll_s is not None:
+        raise UserError(
+            f'[tracker] backend is {name!r}, which has a time of its own: a simulation needs "sim", or '
+            f"--speed X and a program that plays {name}"
+        )
 
 
 def _hub_settings(endpoint: str, pace: Pace) -> SessionSettings:

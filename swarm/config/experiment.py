@@ -181,7 +181,7 @@ class VisitSettings:
     every_tracks: Annotated[int, Between(1, 100_000)] = 10
     """A learner visits at the start and after so many journeys, until its memory is full."""
     duration_s: Annotated[float, Between(1, 600)] = 30.0
-    """How long a learner watches."""
+    """How long a learner watches; with `frames_per_s` for at most 500 frames."""
     frames_per_s: Annotated[float, Between(0.5, 30)] = 5.0
     """Camera frames that are looked at while watching."""
     moves: Annotated[int, Between(1, 100)] = 5

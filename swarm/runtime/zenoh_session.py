@@ -146,6 +146,10 @@ class Publisher:
         """Zenoh's own, without a call in between, which would show in the pace of a lockstep."""
 
 
+ZENOH_SAYS = "error,zenoh::api::session=off"
+"""A session that closes calls it an error that messages were still on their way to it."""
+
+
 class Session:
     """A Zenoh session, closed at the end of its block or of the process.
 
@@ -157,7 +161,7 @@ class Session:
         os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
         import zenoh
 
-        zenoh.init_log_from_env_or("error")
+        zenoh.init_log_from_env_or(ZENOH_SAYS)
         self.endpoint = settings.endpoint
         self._zenoh = zenoh
         self._tokens: list[zenoh.LivelinessToken] = []
