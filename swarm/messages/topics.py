@@ -49,8 +49,10 @@ class Role(Enum):
 
 SHORT_BYTES = 1_024
 """Room for a message of numbers: the longest of them takes some 120 bytes, its header 24."""
+MIDDLE_BYTES = 8_192
+"""With words, or lists of numbers: a page of text, a path of thousands of moves."""
 LONG_BYTES = 65_536 + 24
-"""Of a message with lists or words: no payload that is larger is decoded. Its header comes beside it."""
+"""With lists of messages: no payload that is larger is decoded. Its header comes beside it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +77,11 @@ class Topic(Generic[M]):
     def largest_bytes(self) -> int:
         """Of payload and header together; a hub drops what is larger."""
         fields = self.message.DESCRIPTOR.fields
-        long = any(field.is_repeated or field.type == field.TYPE_STRING for field in fields)
-        return LONG_BYTES if long else SHORT_BYTES
+        if any(field.is_repeated and field.message_type for field in fields):
+            return LONG_BYTES
+        if any(field.is_repeated or field.type == field.TYPE_STRING for field in fields):
+            return MIDDLE_BYTES
+        return SHORT_BYTES
 
     def key(self, robot: str = "*") -> str:
         """The key of one robot, or with "*" the expression for all of them."""
