@@ -10,6 +10,7 @@ import typer
 from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
+from swarm.cli.console import console_command
 from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
 from swarm.cli.export import export_command
@@ -55,6 +56,7 @@ app.command("analyze")(analyze_command)
 app.command("trials")(trials_command)
 app.command("durations")(durations_command)
 app.command("info")(info_command)
+app.command("console")(console_command)
 app.command("check")(check_command)
 app.command("recover")(recover_command)
 app.command("replay")(replay_command)
