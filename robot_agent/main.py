@@ -70,7 +70,7 @@ def run(arguments: argparse.Namespace) -> None:
         leave_with_parent()
     identity = RunIdentity.of(experiment, arguments.trial)
     with joined(arguments, "robot", names, experiment.simulation.tick_s, identity) as node:
-        place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
+        place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep, arguments.state)
         assembly = Assembly(experiment, node, arguments.trial, place)
         agents = [assembly.agent(name) for name in names]
         if arguments.state:
@@ -99,8 +99,11 @@ def _go_on(agent: Agent, name: str, arguments: argparse.Namespace, run_id: str, 
 
 
 def _step(agents: list[Agent], t_ns: int) -> None:
+    """All wheels stand before the disk is waited for."""
     for agent in agents:
         agent.step(t_ns)
+    for agent in agents:
+        agent.keep_emergency()
 
 
 def _write_keys(file: Path, keys_received: set[str]) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from server.hubs.attendance import Tell
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Item
-from swarm.messages.topics import topic_of
+from swarm.messages.topics import ESTOP, topic_of
 from swarm.runtime.identity import Fingerprint
 from swarm.runtime.liveliness import Presence
 
@@ -49,7 +49,7 @@ class Admission:
 
     def accepts(self, item: Item) -> bool:
         """Whether a message is the run's: a robot speaks under its own keys; server, tracker and emulator
-        under all.
+        under all. Anybody may stop everybody.
 
         Keys that the key table does not know are left to the recorder, which counts them.
         """
@@ -57,7 +57,11 @@ class Admission:
         if epoch in self._served_by:
             return True
         found = topic_of(item.key)
-        if found is None or (not found[0].to_robot and (found[1], epoch) in self._admitted):
+        if (
+            found is None
+            or found[0] is ESTOP
+            or (not found[0].to_robot and (found[1], epoch) in self._admitted)
+        ):
             return True
         self._say(f"messages of {item.key[:80]} from nobody who takes part (epoch {epoch}) are left out")
         return False

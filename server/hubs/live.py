@@ -32,7 +32,7 @@ NAMED_EVERY_S = 5.0
 """Who is waited for is named so often: a person sees it, and it fills no screen."""
 LAST_WORDS_S = 10.0
 """Real seconds for the closing accounts. An agent gives its own within a tick, on a busy machine later."""
-EVERYTHING = ("robot/**", "tracker/**", "run/**", "server/**", "sim/**")
+EVERYTHING = ("robot/**", "tracker/**", "run/**", "server/**", "sim/**", "operator/**")
 
 
 class LiveHub:
@@ -69,7 +69,11 @@ class LiveHub:
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
 
-    def start(self) -> None:
+    @property
+    def missing(self) -> list[str]:
+        return self._attendance.missing
+
+    def start(self, meanwhile: Callable[[], None] = lambda: None) -> None:
         """Wait until every robot of the experiment and a tracker are there; name those that are missing.
 
         What they send meanwhile is taken in, or Zenoh would have to wait; of it only what must not be lost
@@ -77,8 +81,9 @@ class LiveHub:
         """
         named_s = time.monotonic()
         self._attendance.look()
-        while missing := self._attendance.missing:
+        while missing := self.missing:
             self._check()
+            meanwhile()
             next(self._ticks)
             self._early.extend(item for item in self._received() if _must_not_be_lost(item.key))
             if time.monotonic() - named_s > NAMED_EVERY_S:

@@ -13,6 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from server.conductor.carrier import Carrier, Operator, SimulatedCarrier
+from server.conductor.prompts import Prompts
 from server.hubs.hub import Hub
 from server.hubs.live import LiveHub
 from server.hubs.lockstep import LockstepHub
@@ -64,6 +65,9 @@ class TrialEnvironment:
     batches_between_flushes: int
     warn: Warn
     """Shows a line to whoever watches."""
+    prompts: Prompts
+    session: Session | None = None
+    """Where people's orders and questions come in; None in a lockstep, which nobody can join."""
     waits_for_people: bool = False
 
 
@@ -96,7 +100,9 @@ def simulated(
             probe = PlacementProbe(partial(place, core_of, cores))
             hub, flush_every = _hub(experiment, plan.identity, session, pace, supervisor, warn, probe)
             reporter = Reporter(hub)
-            yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every, warn)
+            asked = None if pace.lockstep else session
+            carrier = SimulatedCarrier(reporter)
+            yield TrialEnvironment(hub, reporter, carrier, flush_every, warn, Prompts(), asked)
 
 
 def require_emulation(experiment: Experiment, speed: float | None, *, emulate: bool) -> None:
@@ -163,8 +169,9 @@ def laboratory(
     claim(session, _presence(plan.identity))
     hub = LiveHub(session, unix_clock(), experiment, plan.identity, _nothing_to_check, warn)
     reporter = Reporter(hub)
-    carrier = Operator(reporter, warn)
-    yield TrialEnvironment(hub, reporter, carrier, _live_flush(experiment, 1.0), warn, waits_for_people=True)
+    prompts = Prompts()
+    carrier, flush_every = Operator(reporter, warn, prompts), _live_flush(experiment, 1.0)
+    yield TrialEnvironment(hub, reporter, carrier, flush_every, warn, prompts, session, waits_for_people=True)
 
 
 def _presence(identity: RunIdentity) -> Presence:

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from swarm.config.ids import check_id, check_robot_id
 from swarm.config.limits import BEYOND_CORNER_M
 from swarm.config.toml_files import ConfigFile
 from swarm.errors import nearest
-from swarm.messages.topics import NO_ROBOT, is_id
 
 if TYPE_CHECKING:
     from swarm.config.experiment import Experiment, RobotSettings
 
-_ID_RULE = "an id starts with a small letter and has at most 32 of a-z, 0-9, _ and -"
-
 
 def check_consistency(experiment: Experiment, file: ConfigFile) -> None:
     """UserError, with its line in the file, about what no single value shows."""
-    if not is_id(experiment.run.name):
-        raise file.error(("run", "name"), f"'name' is {experiment.run.name!r}; {_ID_RULE}")
+    check_id(experiment.run.name, ("run", "name"), file)
     if not experiment.learners:
         raise file.error(("robot", 0, "role"), "no robot is a learner: there is nothing to learn or to plot")
     for number, robot in enumerate(experiment.robot):
@@ -27,12 +24,8 @@ def check_consistency(experiment: Experiment, file: ConfigFile) -> None:
 
 def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
     where = ("robot", number)
-    for name, value in (("id", robot.id), ("condition", robot.group)):
-        if not is_id(value):
-            raise file.error((*where, name), f"{name!r} is {value!r}; {_ID_RULE}")
-    if robot.id in NO_ROBOT:
-        names = ", ".join(sorted(NO_ROBOT))
-        raise file.error((*where, "id"), f"'id' is {robot.id!r}, as in keys that name no robot ({names})")
+    check_robot_id(robot.id, (*where, "id"), file)
+    check_id(robot.group, (*where, "condition"), file)
     if robot.paths and robot not in experiment.learners:
         raise file.error((*where, "paths"), f"{robot.id!r} is no learner: it cannot be given paths")
     if len(robot.paths) > experiment.learning.capacity:

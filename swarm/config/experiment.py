@@ -41,6 +41,15 @@ class Role(Enum):
     EXPERT = "expert"
 
 
+class WithoutServer(StrEnum):
+    """What a robot does that no longer hears the server."""
+
+    WAIT = "wait"
+    """It finishes its move and waits."""
+    STOP = "stop"
+    """It gives up its move, stands at once and waits."""
+
+
 @dataclass(frozen=True)
 class RunSettings:
     """[run]: how long, how often, and from which seed."""
@@ -53,6 +62,10 @@ class RunSettings:
     """Repetitions, each with new robots and random numbers of its own."""
     seed: Annotated[int, Between(0, LARGEST_SEED)] = 1
     """The one root of all randomness; the same seed gives the same log."""
+    without_server: WithoutServer = WithoutServer.WAIT
+    """What a robot does that no longer hears the server: wait after the move under way, or stop at once."""
+    without_server_s: Annotated[float, Between(2, 3600)] = 5.0
+    """Silence after which it does so; the run's state comes once a second, and a lost one stops nobody."""
 
 
 @dataclass(frozen=True)

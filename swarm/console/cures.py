@@ -6,7 +6,7 @@ CURES = {
     "carry": "Carry the robot to the place that is named, then confirm.",
     "checkpoint": "Free some space on the robot's card, or what it learns is lost when it restarts.",
     "clock": "Let that machine follow a time server (NTP).",
-    "displaced": "Nothing, if somebody carried it; else look for a body that the tracker takes for this robot.",
+    "displaced": "Nothing, if somebody carried it; else look for a body that the tracker confuses with it.",
     "gone": "Look at its battery and its link, and start its process again: it goes on from its checkpoint.",
     "interrupted": "Go on with: swarm-server --resume RUN.",
     "link": "Look at the cable or the radio; the watchdog holds the wheels meanwhile.",

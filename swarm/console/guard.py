@@ -25,7 +25,7 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Cache-Control": "no-store",
 }
-"""Nothing from elsewhere is loaded, nothing is run that does not stand in a file of ours, nobody frames us."""
+"""Nothing from elsewhere is loaded, nothing is run but files of ours, nobody frames us."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def _same(one: str, other: str) -> bool:
 
 
 class Guard:
-    """Refuses what does not come from this server's own page, and says in every answer what the page may do."""
+    """Refuses what does not come from this server's own page, and tells browsers what that page may do."""
 
     def __init__(self, app: ASGIApp, hosts: Collection[str], scheme: str) -> None:
         self._app = app

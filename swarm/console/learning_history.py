@@ -12,7 +12,7 @@ from swarm.geometry import MOVES
 from swarm.messages import swarm_pb2 as pb
 
 MOVES_BETWEEN_TABLES = 250
-"""Kept tables of 100 states take 6 kB: half a megabyte in 15,000 moves, and at most 250 updates for any move."""
+"""A table of 100 states takes 6 kB: half a megabyte in 15,000 moves, and at most 250 updates for any move."""
 
 
 class MoveMade(NamedTuple):

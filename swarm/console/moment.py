@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from swarm.clock import NS_PER_S
+from swarm.console.learning_history import MoveMade
 from swarm.console.robot_history import RobotHistory, newest, place_at
 from swarm.console.run_history import RunHistory
 
@@ -88,9 +89,10 @@ def path_under_way(robot: RobotHistory, made: int, t_s: float) -> dict[str, Any]
     if place < 0 or not learning.moves[place].path:
         return None
     move = learning.moves[place]
+    ended = learning.replays[: place_at(learning.replays, t_s)][-2:]
     if place < made and any(
         each.path == move.path and each.started_move <= move.number < each.started_move + each.moves
-        for each in learning.replays[max(0, place_at(learning.replays, t_s) - 2) : place_at(learning.replays, t_s)]
+        for each in ended
     ):
         return None
     first = _first_of_replay(robot, place)
@@ -110,7 +112,9 @@ def _first_of_replay(robot: RobotHistory, place: int) -> int:
     before = newest(learning.replays, learning.moves[place - 1].t_s if place else 0.0)
     begins = before.started_move + before.moves if before else 1
     first = place
-    while first and learning.moves[first - 1].path == move.path and learning.moves[first - 1].number >= begins:
+    while (
+        first and learning.moves[first - 1].path == move.path and learning.moves[first - 1].number >= begins
+    ):
         first -= 1
     return first
 

@@ -47,9 +47,7 @@ def page_app(feed: Feed, roles: Roles, hosts: list[str], scheme: str) -> Guard:
 class Connections:
     """Every page that is open now."""
 
-    def __init__(
-        self, feed: Feed, roles: Roles, monotonic_s: Callable[[], float] = time.monotonic
-    ) -> None:
+    def __init__(self, feed: Feed, roles: Roles, monotonic_s: Callable[[], float] = time.monotonic) -> None:
         self._feed = feed
         self._roles = roles
         self._monotonic_s = monotonic_s

@@ -14,7 +14,7 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header
 
 STATUS_EVERY_S = 5.0
-"""Of statuses that say the same activity one in so many seconds is kept: 50 robots' ten hours fit in memory."""
+"""Of statuses with the same activity one in so many seconds is kept: 50 robots' ten hours fit in memory."""
 
 LATEST_S = 2.0
 """A pose is older than this when it comes only if the tracker's clock is another one."""

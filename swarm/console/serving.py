@@ -94,7 +94,7 @@ def _listening(address: Address) -> socket.socket:
     except OSError as error:
         listener.close()
         raise UserError(
-            f"cannot listen on {address.host}:{address.port} ({error.strerror or error}): choose another --port"
+            f"cannot listen on {address.host}:{address.port} ({error.strerror}): choose another --port"
         ) from error
     return listener
 

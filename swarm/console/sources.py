@@ -120,7 +120,7 @@ def _told_by(log: Path) -> tuple[Experiment, About]:
     try:
         numbers = {name: int(run[name]) for name in ("seed", "moves", "trial")}
     except (KeyError, ValueError) as error:
-        raise UserError(f"{log}: does not say which run it holds: was it recorded by swarm-server?") from error
+        raise UserError(f"{log}: does not say which run it holds; was it recorded here?") from error
     experiment = Experiment.of_log(printable(log), text or "", {})
     about = About(
         printable(log),

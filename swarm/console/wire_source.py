@@ -26,7 +26,7 @@ AHEAD_NS = 2 * NS_PER_S
 POLLS_BETWEEN_TRIES = 50
 """While nobody answers: a second."""
 MOST_HELD = 10_000
-"""Messages that wait for the first state of the run, which tells what time it is: a second of a large swarm."""
+"""Messages that wait for the run's first state, which tells what time it is: a second of a large swarm."""
 
 
 class Listening:
@@ -44,7 +44,9 @@ class Listening:
         try:
             return RunIdentity.unpack(answers[0]) if answers else None
         except ValueError as error:
-            raise UserError(f"the server does not say whose run this is ({error}): is it of this version?") from error
+            raise UserError(
+                f"the server's identity cannot be read ({error}): is it of this version?"
+            ) from error
 
     def listen(self) -> None:
         """From now on every topic's messages are kept for `samples`."""

@@ -34,7 +34,8 @@ Timed = tuple[int, Item]
 class LogFollower:
     """Gives the messages of a log in the order in which they were recorded, as far as they are written.
 
-    Only the channels that are `wanted` are given, and none that this project does not know. `read` may be called again and again; `ended` says whether the recorder has closed the log.
+    Only the channels that are `wanted` are given, and none that this project does not know. `read` may be
+    called again and again; `ended` says whether the recorder has closed the log.
     """
 
     def __init__(self, path: Path, wanted: Wanted = everything) -> None:

@@ -1,8 +1,8 @@
 """One table of everything on the wire: readers, recorder, health and the documentation use it.
 
 A robot's name stands in its keys and nowhere else, so a message cannot claim another sender. A robot
-receives its own pose, its own orders and the run's state (`to_robot`): the paper's rule that nothing
-but what the camera sees crosses from one robot to another can be read off this table.
+receives its own pose, its own orders, the run's state and an emergency stop (`to_robot`): the paper's rule
+that nothing but what the camera sees crosses from one robot to another can be read off this table.
 """
 
 from __future__ import annotations
@@ -57,6 +57,9 @@ ORDER = Topic(
     "robot/{robot}/order", pb.Order, "what the conductor wants", None, Delivery.EVERY, True, to_robot=True
 )
 RUN_STATE = Topic("run/state", pb.RunState, "phase and trial", 1.0, Delivery.NEWEST, True, to_robot=True)
+ESTOP = Topic(
+    "operator/estop", pb.EmergencyStop, "all wheels stop at once", None, Delivery.EVERY, False, to_robot=True
+)
 COMMAND = Topic(
     "robot/{robot}/command", pb.Command, "wheel speeds as sent, pose believed", 10.0, Delivery.NEWEST, True
 )
@@ -83,6 +86,7 @@ TABLE: tuple[Topic[Any], ...] = (
     POSE,
     ORDER,
     RUN_STATE,
+    ESTOP,
     COMMAND,
     MOVE,
     BEST_PATH,
@@ -110,6 +114,10 @@ NO_ROBOT = {topic.pattern.split("/")[0] for topic in TABLE if "{robot}" not in t
 """What the tables of a log call those who are no robot: no robot may be called so. `view` is the server's."""
 RUN_IDENTITY = "run/identity"
 """Asked, not published: the server answers with the run's id and every setting."""
+RUN_STATUS = "run/status"
+"""Asked: the server answers with a `RunStatus`."""
+OPERATOR_ORDER = "operator/order"
+"""Asked with an `OperatorOrder`: the server obeys or refuses, and answers with an `OrderAnswer`."""
 
 
 def is_id(name: str) -> bool:

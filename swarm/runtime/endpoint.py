@@ -7,6 +7,8 @@ import socket
 
 from swarm.errors import UserError
 
+DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+"""Of a server on this machine, at the port that Zenoh has registered."""
 PROTOCOLS = ("tcp", "tls", "quic", "udp", "ws")
 """Over a network; on one machine there is `unixsock-stream/FILE` too."""
 _ADDRESS = re.compile(r"(\[[0-9A-Fa-f:.%]+\]|[^/:\[\]]+):(\d+)([?#].*)?")

@@ -23,6 +23,7 @@ from swarm.clock import scaled_clock, unix_clock
 from swarm.config import arguments as values
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
+from swarm.runtime.endpoint import DEFAULT_ENDPOINT
 from swarm.runtime.handshake import agreed_run
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import NO_IDENTITY, Presence, claim
@@ -31,7 +32,6 @@ from swarm.runtime.node import LiveNode, Node
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from swarm.version import version_text
 
-DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 PR_SET_PDEATHSIG = 1
 """From linux/prctl.h: the signal that a process gets when its parent ends."""
 LEAVE_WITHIN_S = 5.0

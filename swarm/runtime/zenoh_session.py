@@ -32,6 +32,8 @@ QUEUE_DEPTH = 65_536
 """Messages; fifty robots send some thousand a second: room for more than half a minute."""
 MOST_AT_ONCE = 4096
 """Messages of an inbox in one poll: some tenths of a second of work on a board, then the others' turn."""
+QUESTIONS_WAITING = 256
+"""Of one key: a main loop answers them ten times a second; who asks more often waits for Zenoh."""
 LARGEST_MESSAGE_BYTES = 16 << 20
 """What a session takes in: thrice an exchange of 1000 robots in lockstep. Zenoh would put 1 GiB together
 before anybody could refuse it."""
@@ -79,6 +81,35 @@ class Inbox:
         return samples
 
 
+class Question:
+    """What somebody asks under a key, until it is answered."""
+
+    def __init__(self, key: str, query: zenoh.Query) -> None:
+        self._key = key
+        self._query = query
+        self.payload = bytes(query.payload) if query.payload is not None else b""
+
+    def answer(self, payload: bytes) -> None:
+        """Answer it, once."""
+        with self._query:
+            self._query.reply(self._key, payload)
+
+
+class Questions:
+    """What is asked under one key, polled by the main loop."""
+
+    def __init__(self, key: str, queryable: zenoh.Queryable[zenoh.handlers.Handler[zenoh.Query]]) -> None:
+        self._key = key
+        self._queryable = queryable
+
+    def poll(self) -> list[Question]:
+        """What has been asked since the last call, in order."""
+        asked: list[Question] = []
+        while len(asked) < MOST_AT_ONCE and (query := self._queryable.try_recv()) is not None:
+            asked.append(Question(self._key, query))
+        return asked
+
+
 class PresenceWatch:
     """The presence keys that have appeared and vanished, polled by the main loop."""
 
@@ -119,6 +150,7 @@ class Session:
         import zenoh
 
         zenoh.init_log_from_env_or("error")
+        self.endpoint = settings.endpoint
         self._zenoh = zenoh
         self._tokens: list[zenoh.LivelinessToken] = []
         self._listening: list[zenoh.Subscriber[None]] = []
@@ -195,9 +227,15 @@ class Session:
         """Answer everyone who asks for a key with the same bytes, for as long as this session lives."""
         self._answering.append(self._session.declare_queryable(key, lambda query: query.reply(key, payload)))
 
-    def ask(self, key: str, within_s: float) -> list[bytes]:
+    def questions(self, key: str) -> Questions:
+        """What others ask under a key, to be answered from the main loop."""
+        channel: zenoh.handlers.FifoChannel[zenoh.Query] = self._zenoh.handlers.FifoChannel(QUESTIONS_WAITING)
+        return Questions(key, self._session.declare_queryable(key, channel))
+
+    def ask(self, key: str, within_s: float, payload: bytes | None = None) -> list[bytes]:
         """What those answer who know the key."""
-        replies = self._session.get(key, target=self._zenoh.QueryTarget.ALL, timeout=within_s)
+        target = self._zenoh.QueryTarget.ALL
+        replies = self._session.get(key, target=target, timeout=within_s, payload=payload)
         return [bytes(reply.ok.payload) for reply in replies if reply.ok is not None]
 
     def alive(self, key: str) -> list[str]:

@@ -1,0 +1,64 @@
+"""`swarm lab`: what is done with a laboratory file before anything moves."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from swarm.cli.output import print_findings, print_json
+from swarm.cli.values import good_place
+
+LABORATORY_FILE = "lab.toml"
+
+lab_app = typer.Typer(help="A laboratory: its file, and whether it fits an experiment.", no_args_is_help=True)
+
+LaboratoryFile = Annotated[Path, typer.Argument(help="A laboratory file, such as deploy/lab.toml.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")]
+
+
+@lab_app.command("init")
+def init_command(
+    out: Annotated[Path, typer.Option(help="A folder, new or not.", callback=good_place)],
+    json: Json = False,
+) -> None:
+    """Write a laboratory file with every setting and a comment to each; nothing is overwritten."""
+    from swarm.files import make_folder, new_file
+
+    make_folder(out)
+    path = out / LABORATORY_FILE
+    with new_file(path) as file:
+        file.write(files("swarm.config").joinpath(LABORATORY_FILE).read_bytes())
+    if json:
+        print_json({"laboratory": str(path)})
+    else:
+        typer.echo(f"wrote {path}: say there which machines and robots there are")
+
+
+@lab_app.command("check")
+def check_command(
+    laboratory: LaboratoryFile,
+    experiment: Annotated[Path | None, typer.Argument(help="An experiment that is to run there.")] = None,
+    json: Json = False,
+) -> None:
+    """Look at a laboratory file, and at whether an experiment fits its robots.
+
+    Exit code 0: it does. 1: something is bad; the cure stands beside it. 2: a file is not what it should be.
+    """
+    from swarm.checkup.finding import any_bad
+    from swarm.checkup.laboratory import fit_findings, laboratory_findings
+    from swarm.config.experiment import Experiment
+    from swarm.config.laboratory import Laboratory
+
+    lab = Laboratory.load(laboratory)
+    found = list(laboratory_findings(lab))
+    if experiment:
+        found += fit_findings(lab, Experiment.load(experiment))
+    if json:
+        print_json({"laboratory": str(laboratory), "findings": [finding.as_json() for finding in found]})
+    else:
+        print_findings(found)
+    if any_bad(found):
+        raise typer.Exit(1)
