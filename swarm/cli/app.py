@@ -23,6 +23,7 @@ from swarm.cli.reproduce import reproduce_command
 from swarm.cli.simulate import simulate_command
 from swarm.cli.status import status_command
 from swarm.cli.trials import trials_command
+from swarm.cli.watch import watch_command
 from swarm.errors import UserError
 from swarm.version import version_text
 
@@ -66,6 +67,7 @@ app.command("trials")(trials_command)
 app.command("durations")(durations_command)
 app.command("info")(info_command)
 app.command("console")(console_command)
+app.command("watch")(watch_command)
 app.command("check")(check_command)
 app.command("recover")(recover_command)
 app.command("replay")(replay_command)

@@ -2,30 +2,35 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from swarm.cli.steering import Credentials
 from swarm.errors import UserError
 from swarm.extras import require_extra
 
 if TYPE_CHECKING:
+    from swarm.console.controls import Controls
     from swarm.console.sources import Source
 
 Place = Annotated[
-    Path | None, typer.Argument(help="A run directory or a .mcap log, finished or being written.")
+    Path | None, typer.Argument(metavar="[RUN|LOG]", help="A run's directory or log, finished or not.")
 ]
 Trial = Annotated[int | None, typer.Option(min=0, help="Which of the run's trials.", show_default="the last")]
-Connect = Annotated[str, typer.Option(metavar="ENDPOINT", help="Of a live run's server, tcp/HOST:PORT.")]
-ZenohConfig = Annotated[Path | None, typer.Option(metavar="FILE", help="Zenoh settings for TLS and users.")]
+Connect = Annotated[
+    str, typer.Option(metavar="WHERE", help="A live run: tcp/HOST:PORT, its directory, a laboratory file.")
+]
 
 
 def console_command(
     place: Place = None,
     trial: Trial = None,
     connect: Connect = "",
-    zenoh_config: ZenohConfig = None,
+    zenoh_config: Credentials = None,
+    steer: Annotated[bool, typer.Option("--steer", help="Also print an address that may steer.")] = False,
     port: Annotated[int, typer.Option(min=0, max=65_535, help="Of the page; 0: any that is free.")] = 8765,
     listen: Annotated[str, typer.Option(help="The address that pages are opened under.")] = "127.0.0.1",
     certificate: Annotated[Path | None, typer.Option(help="PEM; wanted if others can reach it.")] = None,
@@ -38,26 +43,44 @@ def console_command(
     """
     require_extra("console", "starlette", "uvicorn", "websockets")
     require_extra("lab", "mcap")
-    from swarm.console.feed import Feed
+    from swarm.console.controls import LOOK_EVERY_S
+    from swarm.console.open_page import Shown
+    from swarm.console.polling import Polling
     from swarm.console.serving import Address, serve
+    from swarm.console.sources import POLL_S
 
     address = Address(listen, port, certificate, key)
     address.check()
-    with Feed(source_of(place, trial, connect, zenoh_config)) as feed:
-        serve(feed, address, steer=False, browse=browser)
+    controls = _controls(connect, zenoh_config, wanted=steer)
+    with ExitStack() as stack:
+        run = stack.enter_context(Polling(source_of(place, trial, connect, zenoh_config), POLL_S))
+        if controls:
+            stack.enter_context(Polling(controls, LOOK_EVERY_S))
+        serve(Shown(run, controls), address, steer=steer, browse=browser)
 
 
 def source_of(place: Path | None, trial: int | None, connect: str, zenoh_config: Path | None) -> Source:
     """The log or the live run that a command line names; UserError unless it names one of the two."""
     if bool(place) == bool(connect):
-        raise UserError("say what to show: a RUN or LOG, or with --connect ENDPOINT a live run")
+        raise UserError("say what to show: a RUN or LOG, or with --connect WHERE a live run")
     if connect:
         from swarm.console.wire_source import WireSource
-        from swarm.runtime.endpoint import check_endpoint
+        from swarm.control.reaching import settings_of
 
-        check_endpoint(connect)
-        return WireSource(connect, zenoh_config)
+        return WireSource(settings_of(connect, zenoh_config))
     from swarm.console.sources import LogSource, logs_of_trial
 
     assert place
     return LogSource(logs_of_trial(place, trial))
+
+
+def _controls(connect: str, zenoh_config: Path | None, *, wanted: bool) -> Controls | None:
+    """Of a live run that is connected to."""
+    if not connect:
+        if wanted:
+            raise UserError("--steer: a log cannot be steered; name the live run with --connect WHERE")
+        return None
+    from swarm.console.controls import Controls
+    from swarm.control.reaching import settings_of
+
+    return Controls(settings_of(connect, zenoh_config))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from swarm.clock import NS_PER_S
-from swarm.console.learning_history import MoveMade
 from swarm.console.robot_history import RobotHistory, newest, place_at
 from swarm.console.run_history import RunHistory
 

@@ -3,29 +3,19 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from starlette.applications import Starlette
 from starlette.routing import Mount, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from swarm.console.feed import Feed
 from swarm.console.guard import Guard, Roles
-from swarm.console.viewer import Viewer
+from swarm.console.open_page import OpenPage, Shown
 
 PAGE = Path(__file__).parent / "page"
-FRAME_S = 0.05
-"""The page draws the places in between; a trial's poses come every 0.1 s."""
-FRAME_OF_MANY_S = 0.1
-MANY_ROBOTS = 20
-"""Above this a frame takes the page longer to draw than to show."""
-STATE_S = 0.5
-"""A person sees no difference."""
 GREETING_WITHIN_S = 5.0
 MOST_VIEWERS = 32
 """A laboratory's screens; each takes a hundredth of a core."""
@@ -34,9 +24,9 @@ REFUSED = 1008
 NOT_UNDERSTOOD = 1003
 
 
-def page_app(feed: Feed, roles: Roles, hosts: list[str], scheme: str) -> Guard:
+def page_app(shown: Shown, roles: Roles, hosts: list[str], scheme: str) -> Guard:
     """The application that a server runs, for pages that are opened under one of the hosts' names."""
-    connections = Connections(feed, roles)
+    connections = Connections(shown, roles)
     routes = [
         WebSocketRoute("/run", connections.serve),
         Mount("/", StaticFiles(directory=PAGE, html=True)),
@@ -47,8 +37,8 @@ def page_app(feed: Feed, roles: Roles, hosts: list[str], scheme: str) -> Guard:
 class Connections:
     """Every page that is open now."""
 
-    def __init__(self, feed: Feed, roles: Roles, monotonic_s: Callable[[], float] = time.monotonic) -> None:
-        self._feed = feed
+    def __init__(self, shown: Shown, roles: Roles, monotonic_s: Callable[[], float] = time.monotonic) -> None:
+        self._shown = shown
         self._roles = roles
         self._monotonic_s = monotonic_s
         self._open = 0
@@ -74,10 +64,9 @@ class Connections:
         elif self._open > MOST_VIEWERS:
             await websocket.close(REFUSED, f"{MOST_VIEWERS} pages are open already: close one")
         else:
-            page = Page(self._feed, may_steer=self._roles.may_steer(token))
-            await self._talk(websocket, page)
+            await self._talk(websocket, OpenPage(self._shown, may_steer=self._roles.may_steer(token)))
 
-    async def _talk(self, websocket: WebSocket, page: Page) -> None:
+    async def _talk(self, websocket: WebSocket, page: OpenPage) -> None:
         hearing = asyncio.create_task(_hear(websocket, page))
         try:
             while not hearing.done():
@@ -89,57 +78,14 @@ class Connections:
             hearing.cancel()
 
 
-async def _hear(websocket: WebSocket, page: Page) -> None:
+async def _hear(websocket: WebSocket, page: OpenPage) -> None:
+    """Orders are waited for on a thread: meanwhile the page goes on, and may say more."""
+    orders: set[asyncio.Task[None]] = set()
     while True:
-        page.hear(await websocket.receive_json())
-
-
-class Page:
-    """What one open page is told, and what it asks."""
-
-    def __init__(self, feed: Feed, *, may_steer: bool) -> None:
-        self.may_steer = may_steer
-        self._feed = feed
-        self._viewer: Viewer | None = None
-        self._now_s: float | None = None
-        self._state_due_s = 0.0
-
-    @property
-    def period_s(self) -> float:
-        """Between two frames."""
-        history = self._feed.source.history
-        return FRAME_OF_MANY_S if history and len(history.robots) > MANY_ROBOTS else FRAME_S
-
-    def hear(self, words: Any) -> None:
-        """Something that the page asks."""
-        self._state_due_s = 0.0
-        if self._viewer:
-            with self._viewer.history.lock:
-                self._viewer.asked(words)
-
-    def messages(self, now_s: float) -> Iterator[str]:
-        """What the page has to be told at a time, as JSON."""
-        elapsed_s = now_s - self._now_s if self._now_s is not None else 0.0
-        self._now_s = now_s
-        viewer = self._viewer_of_run()
-        for message in viewer.step(elapsed_s) if viewer else ():
-            yield json.dumps(message, separators=(",", ":"))
-        if now_s >= self._state_due_s:
-            self._state_due_s = now_s + STATE_S
-            yield json.dumps({**(viewer.state if viewer else {"kind": "state"}), **self._about_source()})
-
-    def _viewer_of_run(self) -> Viewer | None:
-        """A new one when another run has begun."""
-        history = self._feed.source.history
-        if history and (self._viewer is None or self._viewer.history is not history):
-            self._viewer = Viewer(history, live=self._feed.source.is_live)
-        return self._viewer
-
-    def _about_source(self) -> dict[str, Any]:
-        source = self._feed.source
-        return {
-            "source": self._feed.state,
-            "trouble": bool(self._feed.trouble),
-            "is_live": source.is_live,
-            "may_steer": self.may_steer,
-        }
+        words = await websocket.receive_json()
+        if page.is_order(words):
+            order = asyncio.create_task(asyncio.to_thread(page.order, words))
+            orders.add(order)
+            order.add_done_callback(orders.discard)
+        else:
+            page.hear(words)

@@ -87,6 +87,12 @@ class RunHistory:
         """The run's time of the first message."""
         return self._began_ns or 0
 
+    def time_of_move(self, number: int) -> float | None:
+        """When the last of the learners had made so many moves; None if one has not yet."""
+        times = [self.robots[robot.id].learning.time_of_move(number) for robot in self.experiment.learners]
+        known = [t_s for t_s in times if t_s is not None]
+        return max(known) if len(known) == len(times) else None
+
     def add(self, t_ns: int, item: Item) -> None:
         """Take in a message that was received at a time of the run; bad ones are counted."""
         found = topic_of(item.key)

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import uvicorn
 
-from swarm.console.feed import Feed
 from swarm.console.guard import Roles, new_token
+from swarm.console.open_page import Shown
 from swarm.console.page_server import page_app
 from swarm.errors import UserError
 
@@ -60,7 +60,7 @@ class Address:
         return [f"{f'[{host}]' if ':' in host else host}:{port}" for host in dict.fromkeys(hosts)]
 
 
-def serve(feed: Feed, address: Address, *, steer: bool, browse: bool) -> None:
+def serve(shown: Shown, address: Address, *, steer: bool, browse: bool) -> None:
     """Serve the page until the process is told to leave; the address to open is printed."""
     address.check()
     with _listening(address) as listener:
@@ -70,7 +70,7 @@ def serve(feed: Feed, address: Address, *, steer: bool, browse: bool) -> None:
         _announce(f"{address.scheme}://{names[0]}/", roles, browse=browse)
         server = uvicorn.Server(
             uvicorn.Config(
-                page_app(feed, roles, names, address.scheme),
+                page_app(shown, roles, names, address.scheme),
                 ssl_certfile=address.certificate,
                 ssl_keyfile=address.key,
                 ws="websockets-sansio",

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from swarm.config.experiment import Experiment
+from swarm.console.polling import Polled
 from swarm.console.run_history import SHOWN, About, RunHistory
 from swarm.errors import UserError
 from swarm.files import printable
@@ -20,7 +21,11 @@ AT_ONCE = 500
 """Messages taken in while nobody can look: some milliseconds of work."""
 
 
-class Source(Protocol):
+POLL_S = 0.02
+"""Below the period of a frame; a log that is read from disk is polled without a pause until it is read."""
+
+
+class Source(Polled, Protocol):
     """What fills the history of a run, a little at each `poll`."""
 
     @property
@@ -32,14 +37,12 @@ class Source(Protocol):
         """Whether more is to come."""
 
     @property
+    def is_read(self) -> bool:
+        """Whether there is nothing more to come, and everything is taken in."""
+
+    @property
     def state(self) -> str:
         """For people, in some words: how the source does."""
-
-    def poll(self) -> bool:
-        """Take in what is new; whether there was anything, so that more may be there at once."""
-
-    def close(self) -> None:
-        """Let go of it."""
 
 
 def take_in(history: RunHistory, messages: Sequence[Timed]) -> None:
@@ -66,6 +69,10 @@ class LogSource:
     @property
     def is_live(self) -> bool:
         return not self._followers[-1].is_closed
+
+    @property
+    def is_read(self) -> bool:
+        return self._followers[-1].ended
 
     @property
     def state(self) -> str:

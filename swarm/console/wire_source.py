@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
 from swarm.console.run_history import SHOWN, About, RunHistory
@@ -73,9 +71,10 @@ class WireSource:
     """Hears a live run, and the next one at the same address when that has ended."""
 
     is_live = True
+    is_read = False
 
-    def __init__(self, endpoint: str, zenoh_config: Path | None) -> None:
-        self._settings = SessionSettings(endpoint, wait_for_hub=False, config=zenoh_config)
+    def __init__(self, settings: SessionSettings) -> None:
+        self._settings = settings
         self._listening: Listening | None = None
         self._history: RunHistory | None = None
         self._run_id = ""
@@ -83,7 +82,7 @@ class WireSource:
         """The newest time of the run's state: the clock that everything is put in order by."""
         self._held: list[Timed] = []
         self._polls_to_wait = 0
-        self.state = f"waiting for the server at {endpoint}"
+        self.state = f"waiting for the server at {settings.endpoint}"
 
     @property
     def history(self) -> RunHistory | None:

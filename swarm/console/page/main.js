@@ -11,6 +11,7 @@ import { drawHealth, drawLearners, drawPlan, drawVisits, Events, pressLearner } 
 import { Player } from "./player.js";
 import { QTable } from "./q_table.js";
 import { clock, Run } from "./run.js";
+import { Steering } from "./steering.js";
 
 const run = new Run();
 const ask = connect(hear, tell);
@@ -21,13 +22,14 @@ const curves = new Curves(byId("curves"), byId("curves-legend"));
 const player = new Player(run, ask);
 const events = new Events((tS) => player.seek(tS));
 const observation = new Observation();
+const steering = new Steering(run, ask);
 const changed = new Set();
 let trouble = "connecting";
 
 /** What a message changes has to be drawn again. */
 const DRAWS = {
   about: ["all"],
-  state: ["player", "source", "learner"],
+  state: ["player", "source", "learner", "steering"],
   frame: ["arena", "frame", "slow"],
   growth: ["curves", "visits", "events", "player"],
   learner: ["learner", "arena"],
@@ -37,6 +39,7 @@ function hear(message) {
   if (message.kind === "about") events.drawn = -1;
   const kind = run.take(message, performance.now());
   if (kind === "observation") observation.show(run);
+  if (kind === "answer") steering.hear(message);
   for (const part of DRAWS[kind] ?? []) changed.add(part);
 }
 
@@ -78,6 +81,7 @@ const draws = {
     player.drawTicks();
   },
   source: drawSource,
+  steering: () => run.about && steering.draw(),
 };
 
 /** The curves grow slowly: they are drawn four times a second, the robots at every frame. */
@@ -124,7 +128,7 @@ function plannedVisit() {
 function drawSource() {
   say("source", trouble || run.state.source || "");
   byId("source").dataset.trouble = String(Boolean(trouble || run.state.trouble));
-  say("role", run.state.may_steer ? "you may steer" : "you look; nothing here steers");
+  say("role", run.state.may_steer ? "you may steer" : "you may look");
 }
 
 /** Everything, for a new run or another size. */
@@ -143,7 +147,7 @@ function tick(nowMs) {
     drawAll(nowMs);
   }
   const isDue = (part) => part !== "slow" || nowMs >= slowDueMs;
-  const parts = [...changed].filter((part) => isDue(part) && (run.frame || part === "source"));
+  const parts = [...changed].filter((part) => isDue(part) && (run.frame || part === "source" || part === "steering"));
   if (parts.includes("slow")) slowDueMs = nowMs + SLOW_MS;
   for (const part of parts) {
     changed.delete(part);
