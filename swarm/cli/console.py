@@ -51,7 +51,7 @@ def console_command(
 
     address = Address(listen, port, certificate, key)
     address.check()
-    controls = _controls(connect, zenoh_config, wanted=steer)
+    controls = _controls(connect or str(place or ""), zenoh_config, wanted=steer)
     with ExitStack() as stack:
         run = stack.enter_context(Polling(source_of(place, trial, connect, zenoh_config), POLL_S))
         if controls:
@@ -74,13 +74,14 @@ def source_of(place: Path | None, trial: int | None, connect: str, zenoh_config:
     return LogSource(logs_of_trial(place, trial))
 
 
-def _controls(connect: str, zenoh_config: Path | None, *, wanted: bool) -> Controls | None:
-    """Of a live run that is connected to."""
-    if not connect:
-        if wanted:
-            raise UserError("--steer: a log cannot be steered; name the live run with --connect WHERE")
-        return None
+def _controls(where: str, zenoh_config: Path | None, *, wanted: bool) -> Controls | None:
+    """Of a run whose server listens; UserError if it does not, and is wanted."""
     from swarm.console.controls import Controls
     from swarm.control.reaching import settings_of
 
-    return Controls(settings_of(connect, zenoh_config))
+    try:
+        return Controls(settings_of(where, zenoh_config))
+    except UserError as error:
+        if wanted:
+            raise UserError(f"--steer: {error}") from error
+        return None

@@ -24,7 +24,8 @@ def learner_view(history: RunHistory, name: str, t_s: float) -> dict[str, Any]:
     return {
         "kind": "learner",
         "robot": name,
-        "moves": robot.learning.moves[made - 1].number if made else 0,
+        "moves": robot.learning.number(made),
+        "first": robot.learning.number(1) if made else 0,
         "q_table": [round(value, 4) for value in robot.learning.q_table(made)],
         "memory": [_path(history, robot, counts) for counts in robot.learning.memory(t_s)],
     }

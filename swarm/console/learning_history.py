@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 from array import array
 from bisect import bisect_right
 from collections.abc import Iterator
@@ -85,7 +86,8 @@ class LearningHistory:
     a robot that went on from a checkpoint may have told of a number twice.
     """
 
-    def __init__(self, states: int) -> None:
+    def __init__(self, states: int, capacity: int) -> None:
+        self._capacity = capacity
         self.moves: list[MoveMade] = []
         self.paths: list[RememberedAt] = []
         self.replays: list[ReplayedAt] = []
@@ -98,7 +100,7 @@ class LearningHistory:
 
     @property
     def last_number(self) -> int:
-        return self.moves[-1].number if self.moves else 0
+        return self.number(len(self.moves))
 
     def add_move(self, t_s: float, move: pb.Move) -> None:
         """Moves of no cell of this grid are passed over."""
@@ -152,6 +154,10 @@ class LearningHistory:
         """How many moves had been told by a time."""
         return bisect_right(self.moves, t_s, key=lambda move: move.t_s)
 
+    def number(self, made: int) -> int:
+        """Of the last of so many moves: more than their count if the first ones were not heard."""
+        return self.moves[made - 1].number if made else 0
+
     def time_of_move(self, number: int) -> float | None:
         """When a move was told; None for one that was not."""
         if not 1 <= number <= len(self._place_of):
@@ -167,11 +173,22 @@ class LearningHistory:
         return table
 
     def memory(self, t_s: float) -> Iterator[PathCounts]:
-        """Every path that had been remembered by a time, with what its replays had come to."""
-        counts = {path.number: PathCounts(path) for path in self.paths if path.t_s <= t_s}
-        for replay in self.replays[: bisect_right(self.replays, t_s, key=lambda replay: replay.t_s)]:
-            if replay.path in counts:
-                counts[replay.path].add(replay)
+        """Every path in the memory at a time, with what its replays had come to.
+
+        As in the learner, a full memory forgets the path with the lowest R, the oldest of equals.
+        """
+        counts: dict[int, PathCounts] = {}
+        events: list[list[RememberedAt | ReplayedAt]] = [[*self.paths], [*self.replays]]
+        for event in heapq.merge(*events, key=lambda event: event.t_s):
+            if event.t_s > t_s:
+                break
+            if isinstance(event, ReplayedAt):
+                if event.path in counts:
+                    counts[event.path].add(event)
+                continue
+            if len(counts) >= self._capacity:
+                del counts[min(counts.values(), key=lambda each: each.ratio).path.number]
+            counts[event.number] = PathCounts(event)
         yield from counts.values()
 
     def _go_back_to(self, number: int) -> None:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from swarm.config.experiment import Experiment, RobotSettings
 from swarm.console.learning_history import LearningHistory
-from swarm.geometry import Grid, Pose
+from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header
 
@@ -117,7 +117,7 @@ class RobotHistory:
     def __init__(self, experiment: Experiment, settings: RobotSettings) -> None:
         self.settings = settings
         self.compartment = experiment.compartment(settings)
-        self.learning = LearningHistory(Grid(experiment.arena.columns, experiment.arena.rows).states)
+        self.learning = LearningHistory(self.compartment.grid.states, experiment.learning.capacity)
         self.track = Track()
         self.statuses: list[StatusAt] = []
         self.visits: list[VisitAt] = []

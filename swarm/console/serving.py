@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import uvicorn
+from starlette.types import ASGIApp
 
 from swarm.console.guard import Roles, new_token
 from swarm.console.open_page import Shown
@@ -59,44 +60,47 @@ class Address:
         hosts = [self.host, "localhost", LOOPBACK] if self.is_loopback else [self.host]
         return [f"{f'[{host}]' if ':' in host else host}:{port}" for host in dict.fromkeys(hosts)]
 
+    def listener(self) -> socket.socket:
+        """A socket that listens there; UserError if it cannot."""
+        family = socket.AF_INET6 if ":" in self.host else socket.AF_INET
+        listener = socket.socket(family, socket.SOCK_STREAM)
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind((self.host, self.port))
+        except OSError as error:
+            listener.close()
+            raise UserError(
+                f"cannot listen on {self.host}:{self.port} ({error.strerror}): choose another --port"
+            ) from error
+        return listener
+
 
 def serve(shown: Shown, address: Address, *, steer: bool, browse: bool) -> None:
     """Serve the page until the process is told to leave; the address to open is printed."""
-    address.check()
-    with _listening(address) as listener:
+    with address.listener() as listener:
         port = listener.getsockname()[1]
         roles = Roles("" if address.is_loopback else new_token(), new_token() if steer else "")
         names = address.names(port)
         _announce(f"{address.scheme}://{names[0]}/", roles, browse=browse)
-        server = uvicorn.Server(
-            uvicorn.Config(
-                page_app(shown, roles, names, address.scheme),
-                ssl_certfile=address.certificate,
-                ssl_keyfile=address.key,
-                ws="websockets-sansio",
-                ws_max_size=LARGEST_WORDS_BYTES,
-                ws_per_message_deflate=False,
-                lifespan="off",
-                log_level="error",
-                server_header=False,
-                timeout_graceful_shutdown=LEAVE_WITHIN_S,
-            )
+        server_of(page_app(shown, roles, names, address.scheme), address).run(sockets=[listener])
+
+
+def server_of(app: ASGIApp, address: Address) -> uvicorn.Server:
+    """A server that says nothing of itself, and takes in no more than pages say."""
+    return uvicorn.Server(
+        uvicorn.Config(
+            app,
+            ssl_certfile=address.certificate,
+            ssl_keyfile=address.key,
+            ws="websockets-sansio",
+            ws_max_size=LARGEST_WORDS_BYTES,
+            ws_per_message_deflate=False,
+            lifespan="off",
+            log_level="error",
+            server_header=False,
+            timeout_graceful_shutdown=LEAVE_WITHIN_S,
         )
-        server.run(sockets=[listener])
-
-
-def _listening(address: Address) -> socket.socket:
-    family = socket.AF_INET6 if ":" in address.host else socket.AF_INET
-    listener = socket.socket(family, socket.SOCK_STREAM)
-    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    try:
-        listener.bind((address.host, address.port))
-    except OSError as error:
-        listener.close()
-        raise UserError(
-            f"cannot listen on {address.host}:{address.port} ({error.strerror}): choose another --port"
-        ) from error
-    return listener
+    )
 
 
 def _announce(page: str, roles: Roles, *, browse: bool) -> None:

@@ -50,6 +50,7 @@ class LogFollower:
         self._schemas: dict[int, str] = {}
         self._channels: dict[int, LogChannel] = {}
         if self._file.read(len(MAGIC)) != MAGIC:
+            self._file.close()
             raise LogError(path, "is not an MCAP log: it does not begin like one")
 
     def close(self) -> None:

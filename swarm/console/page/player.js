@@ -52,6 +52,7 @@ export class Player {
     byId("live").hidden = !state.is_live;
     byId("live").setAttribute("aria-pressed", String(Boolean(state.live)));
     const nearest = SPEEDS.reduce((a, b) => (Math.abs(b - state.speed) < Math.abs(a - state.speed) ? b : a));
+    byId("speed").disabled = Boolean(state.live);
     if (document.activeElement !== byId("speed")) byId("speed").value = String(nearest);
     say("go-to-words", `move of ${state.selected ?? "it"}`);
     const scrub = byId("scrub");

@@ -102,9 +102,15 @@ export class QTable {
     const table = this.run.learner?.q_table;
     const text =
       this.chosen === null || !table
-        ? "Best value of each cell, darker is higher; arrows are the best moves. Point at a cell for all eight values."
+        ? `Best value of each cell; arrows are the best moves. Point at a cell for all eight values.${this.#unheard()}`
         : `Cell ${this.chosen}: ${COMPASS.map((name, move) => `${name} ${table[this.chosen * MOVES + move].toFixed(3)}`).join("  ")}`;
     if (this.words.textContent !== text) this.words.textContent = text;
+  }
+
+  /** A console that joined a run late does not know what was learnt before. */
+  #unheard() {
+    const first = this.run.learner?.first ?? 0;
+    return first > 1 ? ` What was learnt before move ${first} was not heard.` : "";
   }
 
   #stateAt(event) {
