@@ -51,7 +51,7 @@ class Connections:
             await self._serve(websocket)
         except WebSocketDisconnect:
             return
-        except (ValueError, KeyError, TimeoutError):
+        except (ValueError, KeyError, RecursionError, TimeoutError):
             await websocket.close(NOT_UNDERSTOOD, "not what a page of this console says")
         finally:
             self._open -= 1
