@@ -6,7 +6,7 @@ from robot_agent.activities import Activity, EmergencyStop, Finished, Seen, Task
 from robot_agent.checkpoint import Checkpoint, Saved
 from robot_agent.drivers.health import TellsHealth
 from robot_agent.drivers.interfaces import Body
-from robot_agent.drivers.kinematics import WheelSpeeds
+from robot_agent.drivers.kinematics import STOPPED, WheelSpeeds
 from robot_agent.navigation.pose_estimator import PoseEstimator
 from robot_agent.reports import Reporter
 from swarm.errors import UserError, in_words
@@ -57,9 +57,9 @@ class Agent:
             self._become(self.activity.decide(seen))
 
     def act(self, seen: Seen) -> tuple[WheelSpeeds, Transition | None]:
-        """Drive; what was really sent comes back, and the move that has just ended."""
+        """Drive, but not out of touch; what was really sent comes back, and the move that has just ended."""
         acted = self.activity.act(seen)
-        sent = self._body.drive(acted.speeds, seen.t_ns)
+        sent = self._body.drive(STOPPED if self._task.inbox.cut_off else acted.speeds, seen.t_ns)
         self._become(acted.then)
         return sent, acted.made
 

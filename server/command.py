@@ -17,6 +17,7 @@ from server.processes.environment import Environment, laboratory, require_emulat
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
+from swarm.access.zenoh_rules import limits
 from swarm.checkup.checkup import experiment_findings, findings
 from swarm.checkup.finding import Level, require_good
 from swarm.checkup.machine import room, writable
@@ -24,8 +25,8 @@ from swarm.cli.output import print_json
 from swarm.config import arguments
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
-from swarm.runtime.process import OneLineParser
-from swarm.runtime.zenoh_session import Session, SessionSettings
+from swarm.runtime.process import OneLineParser, add_protection_arguments, session_settings
+from swarm.runtime.zenoh_session import Session
 from swarm.signals import leave_on_signals
 
 RUN_ID_BYTES = 6
@@ -47,7 +48,8 @@ def conduct(asked: argparse.Namespace) -> None:
             simulated, plan.experiment, asked.speed, progress.warn, emulate=asked.emulate
         )
         if asked.listen:
-            settings = SessionSettings(asked.listen, hub=True, config=asked.zenoh_config)
+            robots = [robot.id for robot in plan.experiment.robot]
+            settings = session_settings(asked, asked.listen, hub=True, limits=limits(robots))
             session = open_session.enter_context(Session(settings))
             trials = [plan.trial]
             _warn_of_bad(plan.experiment, progress)
@@ -153,8 +155,8 @@ def _parser() -> OneLineParser:
     real = parser.add_argument_group("laboratory")
     real.add_argument(
         "--listen",
-        metavar="tcp/HOST:PORT",
-        help="wait here for the robots' agents and the tracker bridge, for instance tcp/0.0.0.0:7447",
+        metavar="tls/HOST:PORT",
+        help="wait here for the robots' agents and the tracker bridge, for instance tls/0.0.0.0:7447",
     )
     real.add_argument(
         "--trial",
@@ -168,7 +170,5 @@ def _parser() -> OneLineParser:
         metavar="RUN_DIRECTORY",
         help="go on with a run whose server ended before its trial did; the agents need no restart",
     )
-    real.add_argument(
-        "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"
-    )
+    add_protection_arguments(parser)
     return parser

@@ -13,13 +13,14 @@ from server.hubs.admission import Admission
 from server.hubs.attendance import Attendance
 from server.hubs.clock_watch import ClockWatch
 from server.hubs.hub import Batch
+from server.hubs.limited_inbox import inboxes_of
 from swarm.clock import WallClock
 from swarm.config.experiment import Experiment
 from swarm.logs.ending import Sender
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
-from swarm.messages.topics import ACCOUNT, RUN_IDENTITY, Delivery, Topic, topic_of
+from swarm.messages.topics import ACCOUNT, RUN_IDENTITY, TABLE, Delivery, Topic, topic_of
 from swarm.runtime.account import unpack_account
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import ALIVE_ROBOTS_AND_TRACKERS, present
@@ -32,11 +33,14 @@ NAMED_EVERY_S = 5.0
 """Who is waited for is named so often: a person sees it, and it fills no screen."""
 LAST_WORDS_S = 10.0
 """Real seconds for the closing accounts. An agent gives its own within a tick, on a busy machine later."""
-EVERYTHING = ("robot/**", "tracker/**", "run/**", "server/**", "sim/**", "operator/**")
 
 
 class LiveHub:
-    """Hears every key of the swarm; a batch is what arrived in one period of the clock."""
+    """Hears what the others of the swarm say; a batch is what arrived in one period of the clock.
+
+    `epoch` is the one that the server shows presence with. What the server says itself does not come over the
+    wire: there, somebody else says it.
+    """
 
     def __init__(
         self,
@@ -46,16 +50,18 @@ class LiveHub:
         identity: RunIdentity,
         check: Callable[[], None],
         warn: Callable[[str], None],
+        epoch: int,
     ) -> None:
         self._session = session
         self._clock = clock
         self._ticks: Iterator[int] = clock.ticks(experiment.simulation.tick_s)
         self._check = check
         self._warn = warn
-        self._inboxes = [session.inbox(key, Delivery.EVERY) for key in EVERYTHING]
-        self._live = LivePublisher(session, clock, epoch=time.time_ns())
+        self._live = LivePublisher(session, clock, epoch)
+        self._own: list[Item] = []
         robots = [robot.id for robot in experiment.robot]
-        self._admission = Admission(identity.fingerprint, robots, self._live.epoch, self._tell)
+        self._inboxes = inboxes_of(session, TABLE, robots, clock.speed, self._tell)
+        self._admission = Admission(identity.fingerprint, robots, self._tell)
         watch = session.presence_watch(ALIVE_ROBOTS_AND_TRACKERS)
         self._attendance = Attendance(watch, robots, self._admission.admits, self._tell)
         self._clocks = ClockWatch(clock.speed, self._tell)
@@ -91,7 +97,7 @@ class LiveHub:
                 self._warn(f"waiting for {', '.join(missing)}")
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
-        self._live.publish(topic, message, robot)
+        self._own.append(self._live.publish(topic, message, robot))
         if isinstance(message, pb.RunState) and message.phase == pb.RunState.ENDED:
             self._ended = True
             self._attendance.dismiss()
@@ -109,7 +115,7 @@ class LiveHub:
         return Batch(t_ns, items)
 
     def unsent(self) -> Batch:
-        """What has arrived by now: the server's own messages come back over the wire like any other."""
+        """What has arrived by now, and what the server has said."""
         return Batch(self._clock.now_ns(), self._received())
 
     def finish(self) -> Batch:
@@ -135,7 +141,8 @@ class LiveHub:
             if header is not None and self._admission.knows(header.epoch):
                 self._gone.add(header.epoch)
                 for key, last in unpack_account(sample.payload).items():
-                    self._accounts[key, header.epoch] = last
+                    if self._admission.accepts(Item(key, header, b"")):
+                        self._accounts[key, header.epoch] = last
 
     def _tell(self, name: str, text: str, level: pb.Event.Level.ValueType) -> None:
         """An event in the log, and a line for whoever watches unless it is only for the log."""
@@ -145,9 +152,12 @@ class LiveHub:
 
     def _received(self) -> list[Item]:
         """A sender's presence arrives before its first message, and so is looked at after the messages."""
-        items = [item for inbox in self._inboxes for item in self._items(inbox.poll())]
+        now_s = time.monotonic()
+        items = [item for inbox in self._inboxes for item in self._items(inbox.poll(now_s))]
         self._attendance.look()
-        return [item for item in items if self._admission.accepts(item)]
+        accepted = [item for item in items if self._admission.accepts(item)]
+        own, self._own = self._own, []
+        return accepted + own
 
     def _items(self, samples: Iterable[WireSample]) -> Iterator[Item]:
         for sample in samples:

@@ -94,11 +94,14 @@ def simulated(
         emulated = emulated_addresses(experiment, Path(sockets)) if emulate else {}
         trial = plan.identity.trial
         specs = run_table(experiment, plan.file, endpoint, trial, pace, plan.output, emulated)
-        claim(session, _presence(plan.identity))
+        presence = _presence(plan.identity)
+        claim(session, presence)
         with Supervisor(specs, plan.output, spread(len(specs), cores)) as supervisor:
             core_of = {os.getpid(): cores[0], **supervisor.core_of}
             probe = PlacementProbe(partial(place, core_of, cores))
-            hub, flush_every = _hub(experiment, plan.identity, session, pace, supervisor, warn, probe)
+            hub, flush_every = _hub(
+                experiment, plan.identity, session, pace, supervisor, warn, probe, presence.epoch
+            )
             reporter = Reporter(hub)
             asked = None if pace.lockstep else session
             carrier = SimulatedCarrier(reporter)
@@ -131,11 +134,12 @@ def _hub(
     supervisor: Supervisor,
     warn: Warn,
     probe: PlacementProbe,
+    epoch: int,
 ) -> tuple[Hub, int]:
     """The hub of a pace, and how many of its batches come between two flushes."""
     if not pace.lockstep:
         clock = scaled_clock(pace.started_ns, pace.speed)
-        live = LiveHub(session, clock, experiment, identity, supervisor.check, warn)
+        live = LiveHub(session, clock, experiment, identity, supervisor.check, warn, epoch)
         return live, _live_flush(experiment, pace.speed)
     names, ticks = list(supervisor.pids), experiment.ticks_per_exchange
     tick_s = experiment.simulation.tick_s
@@ -166,8 +170,9 @@ def laboratory(
     plan: TrialPlan,
 ) -> Iterator[TrialEnvironment]:
     """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
-    claim(session, _presence(plan.identity))
-    hub = LiveHub(session, unix_clock(), experiment, plan.identity, _nothing_to_check, warn)
+    presence = _presence(plan.identity)
+    claim(session, presence)
+    hub = LiveHub(session, unix_clock(), experiment, plan.identity, _nothing_to_check, warn, presence.epoch)
     reporter = Reporter(hub)
     prompts = Prompts()
     carrier, flush_every = Operator(reporter, warn, prompts), _live_flush(experiment, 1.0)

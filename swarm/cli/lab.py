@@ -15,6 +15,9 @@ LABORATORY_FILE = "lab.toml"
 
 lab_app = typer.Typer(help="A laboratory: its file, and whether it fits an experiment.", no_args_is_help=True)
 
+KEYS_FOLDER = "keys"
+"""Beside the laboratory file."""
+
 LaboratoryFile = Annotated[Path, typer.Argument(help="A laboratory file, such as deploy/lab.toml.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")]
 
@@ -62,3 +65,45 @@ def check_command(
         print_findings(found)
     if any_bad(found):
         raise typer.Exit(1)
+
+
+@lab_app.command("keys")
+def keys_command(
+    laboratory: LaboratoryFile,
+    renew: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Make a new certificate; the old one is worth nothing then. `all`: and a new authority."
+        ),
+    ] = None,
+    revoke: Annotated[
+        list[str] | None, typer.Option(help="Take a certificate away, until it is renewed.")
+    ] = None,
+    simulated: Annotated[
+        bool,
+        typer.Option("--simulated", help="Robots are simulated or emulated: they may tell where they are."),
+    ] = False,
+    json: Json = False,
+) -> None:
+    """Make a certificate for everyone in a laboratory and the rules of who may do what, in `keys` beside it.
+
+    What is there is kept. Each process is given its own folder with --credentials, and nobody the folder
+    `keys/authority`. Rules hold from the server's next start.
+    """
+    from swarm.extras import require_extra
+
+    require_extra("lab", "cryptography")
+    from datetime import UTC, datetime
+
+    from swarm.access.keyring import Keyring
+    from swarm.config.laboratory import Laboratory
+
+    folder = laboratory.parent / KEYS_FOLDER
+    keyring = Keyring(folder, Laboratory.load(laboratory), simulated)
+    issued = keyring.update(renew or (), revoke or (), datetime.now(UTC))
+    if json:
+        print_json({"keys": str(folder), "identities": [vars(one) for one in issued]})
+        return
+    for one in issued:
+        until = f", until {one.valid_until}" if one.valid_until else ""
+        typer.echo(f"{one.state:<8} {folder / one.name}{until}")

@@ -22,16 +22,18 @@ _HEAD = """# Everything on the wire
 One line of `swarm/messages/topics.py` says everything about a message. `{robot}` stands for a robot's id.
 Payloads are protobuf messages of `swarm/messages/swarm.proto`; 24 bytes beside each carry the sender's epoch,
 the message's number and the run's time (`swarm/messages/header.py`). A robot receives only what the column
-*to robots* marks: its own pose, its own orders, the run's state and an emergency stop.
+*to robots* marks: its own pose, its own orders, the run's state and an emergency stop. Only who stands under
+*from* is believed, a robot only under its own id; [certificates](security.md) make that sure.
 
-| key | message | meaning | rate | delivery | logged | to robots |
-|---|---|---|---|---|---|---|
+| key | message | from | meaning | rate | delivery | logged | to robots |
+|---|---|---|---|---|---|---|---|
 """
 
 _MEANING = {
     Delivery.EVERY: "reliable, the sender waits: learning events and orders",
     Delivery.NEWEST: "reliable while there is room, only the newest counts: poses, commands, states",
     Delivery.BULK: "dropped first: images",
+    Delivery.URGENT: "ahead of everything, said again and again; nobody waits for one who does not listen",
 }
 
 
@@ -47,6 +49,7 @@ def _cells(topic: Topic[Any]) -> tuple[str, ...]:
     return (
         f"`{topic.pattern}`",
         f"`{topic.message.DESCRIPTOR.name}`",
+        topic.sender.value,
         topic.meaning,
         rate,
         topic.delivery.value,

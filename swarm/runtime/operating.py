@@ -20,8 +20,8 @@ from swarm.runtime.zenoh_session import Session
 
 M = TypeVar("M", bound=Message)
 
-ANSWER_WITHIN_S = 3.0
-"""A server answers at its next tick, 0.1 s; one that writes to a slow disk somewhat later."""
+ANSWER_WITHIN_S = 6.0
+"""A server answers at its next tick, 0.1 s. One that waits for a robot to take an order in may wait 5 s."""
 QUESTIONS = 10
 BETWEEN_QUESTIONS_S = 0.2
 """Together two seconds: a server that has just been started may need them before it can be asked."""

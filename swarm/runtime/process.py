@@ -69,11 +69,9 @@ def add_common_arguments(parser: argparse.ArgumentParser) -> None:
     """The experiment, the server, and how time passes."""
     parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="what is run")
     parser.add_argument(
-        "--connect", default=DEFAULT_ENDPOINT, metavar="tcp/HOST:PORT", help="the server (%(default)s)"
+        "--connect", default=DEFAULT_ENDPOINT, metavar="tls/HOST:PORT", help="the server (%(default)s)"
     )
-    parser.add_argument(
-        "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"
-    )
+    add_protection_arguments(parser)
     simulated = parser.add_argument_group("simulation", "the server gives these to the processes it starts")
     simulated.add_argument("--process", default="", help="the name of this process in a lockstep run")
     simulated.add_argument(
@@ -85,6 +83,28 @@ def add_common_arguments(parser: argparse.ArgumentParser) -> None:
     simulated.add_argument("--trial", type=values.trial, default=0, help="the number of the trial, from 0")
     simulated.add_argument("--seed", type=values.seed, default=None, help="in place of the experiment's")
     simulated.add_argument("--moves", type=values.moves, default=None, help="in place of the experiment's")
+
+
+def add_protection_arguments(parser: argparse.ArgumentParser) -> None:
+    """How a process shows who it is, and whether it need not."""
+    parser.add_argument(
+        "--credentials", type=Path, metavar="DIR", help="its folder of the keys that `swarm lab keys` makes"
+    )
+    parser.add_argument(
+        "--insecure", action="store_true", help="without certificates although other machines can connect"
+    )
+    parser.add_argument("--zenoh-config", type=Path, metavar="FILE", help="more settings of Zenoh's (JSON5)")
+
+
+def session_settings(arguments: argparse.Namespace, endpoint: str, **more: Any) -> SessionSettings:
+    """Settings of the session that a command line asks for."""
+    return SessionSettings(
+        endpoint,
+        config=arguments.zenoh_config,
+        credentials=arguments.credentials,
+        insecure=arguments.insecure,
+        **more,
+    )
 
 
 def load_experiment(arguments: argparse.Namespace) -> Experiment:
@@ -102,7 +122,7 @@ def joined(
     part in no run, and needs none.
     """
     epoch = EPOCH if arguments.lockstep else time.time_ns()
-    settings = SessionSettings(arguments.connect, config=arguments.zenoh_config)
+    settings = session_settings(arguments, arguments.connect)
     if arguments.lockstep:
         settings = patient(settings)
     say = _say_nothing if arguments.supervised else _say

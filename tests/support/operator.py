@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 
 from swarm.clock import unix_clock
+from swarm.errors import UserError
 from swarm.messages import swarm_pb2 as pb
 from swarm.runtime.operating import ask_status, send_order
 from swarm.runtime.zenoh_session import Session
@@ -22,10 +24,14 @@ class Operator:
         self, kind: Order.Kind.ValueType, *robots: str, reason: str = "", prompt: int = 0
     ) -> pb.OrderAnswer:
         order = Order(kind=kind, operator="anna@lab", reason=reason, robots=robots, prompt=prompt)
+        self.sees()
         return send_order(self.session, order)
 
     def sees(self) -> pb.RunStatus:
-        return ask_status(self.session)
+        """Asks again if nobody answers: the server has not begun yet, or waits for a bad link."""
+        while True:
+            with suppress(UserError):
+                return ask_status(self.session)
 
     def waits_until(self, condition: Callable[[pb.RunStatus], bool]) -> pb.RunStatus:
         """Ask until the run is as wanted."""

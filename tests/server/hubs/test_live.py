@@ -37,7 +37,7 @@ class Laboratory:
         self.said: list[str] = []
         self._identity = RunIdentity.of(experiment, 0, "0123456789ab")
         self.hub = LiveHub(
-            hub_session, unix_clock(), experiment, self._identity, lambda: None, self.said.append
+            hub_session, unix_clock(), experiment, self._identity, lambda: None, self.said.append, epoch=1
         )
 
     def joins(self, kind: str, name: str, epoch: int = 1, identity: str = "") -> Session:

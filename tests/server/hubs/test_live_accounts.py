@@ -25,7 +25,7 @@ def test_the_closing_account_of_each_process_comes_after_all_that_it_sent(tmp_pa
         Session(SessionSettings(endpoint)) as there,
     ):
         identity = RunIdentity.of(experiment, 0, "0123456789ab")
-        hub = LiveHub(here, unix_clock(), experiment, identity, lambda: None, print)
+        hub = LiveHub(here, unix_clock(), experiment, identity, lambda: None, print, epoch=1)
         claim(there, Presence("robot", "r0", "board", 77, str(identity.fingerprint)))
         node = LiveNode(there, unix_clock(), 0.01, epoch=77)
         while not present(here, "robot"):
