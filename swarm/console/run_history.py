@@ -79,6 +79,8 @@ class RunHistory:
         self.events: list[EventAt] = []
         self.phases: list[PhaseAt] = []
         self.end_s = 0.0
+        self.messages = 0
+        """That were taken in so far: whether there is anything new."""
         self.bad_messages = 0
         self._began_ns: int | None = None
 
@@ -102,6 +104,7 @@ class RunHistory:
         robot = self.robots.get(name)
         if topic not in SHOWN:
             return
+        self.messages += 1
         if robot:
             robot.numbers.setdefault(item.key, Numbers()).add(item.header)
         try:

@@ -37,6 +37,8 @@ class Viewer:
         self._told: Counter[tuple[str, str]] = Counter()
         self._answers: list[dict[str, Any]] = []
         self._introduced = False
+        self._heard = 0
+        """Messages that the last frame took into account."""
 
     def asked(self, words: Any) -> None:
         """Do what the page asks; what makes no sense changes nothing."""
@@ -84,7 +86,7 @@ class Viewer:
             yield about_run(self.history)
         if growth := self._growth():
             yield growth
-        if self._shown_s != self.cursor_s:
+        if self._shown_s != self.cursor_s or self._heard_more():
             yield self._frame()
         yield from self._learner()
         answers, self._answers = self._answers, []
@@ -121,8 +123,12 @@ class Viewer:
     def _frame(self) -> dict[str, Any]:
         jumped = self._shown_s is None or self.cursor_s < self._shown_s
         since_s = self.cursor_s - TRAIL_S if jumped else self._shown_s or 0.0
-        self._shown_s = self.cursor_s
+        self._shown_s, self._heard = self.cursor_s, self.history.messages
         return {**frame(self.history, self.cursor_s, since_s), "jumped": jumped}
+
+    def _heard_more(self) -> bool:
+        """Whether more was said of the newest moment, which is shown."""
+        return self.cursor_s >= self.history.end_s and self._heard != self.history.messages
 
     def _learner(self) -> Iterator[dict[str, Any]]:
         """The selected robot's head, if a move, a path or another choice has changed it."""

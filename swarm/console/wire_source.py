@@ -110,7 +110,7 @@ class WireSource:
         try:
             session = Session(self._settings)
         except UserError as error:
-            self.state = str(error)
+            self.state = f"waiting: {error}"
             return
         listening = Listening(session)
         identity = listening.identity()
