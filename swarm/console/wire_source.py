@@ -92,8 +92,9 @@ class WireSource:
         if self._listening is None:
             self._try_to_join()
             return False
+        is_alone = self._listening.is_alone  # Asked first: what the server said last is there already.
         self._take_in(self._listening.samples())
-        if self._listening and self._listening.is_alone:
+        if self._listening and is_alone:
             self._leave(f"the server at {self._settings.endpoint} is gone: waiting for it")
         return False
 

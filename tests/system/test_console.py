@@ -63,6 +63,7 @@ def test_every_control_has_its_effect(laboratory: Laboratory, stack: ExitStack) 
     moves = page.told("frame", moved_beyond(moves + 2))["robots"]["r0"]["moves"]
     assert not page.orders("done", prompt=7)["accepted"]
     assert page.orders("stop")["accepted"]
+    page.asks(ask="live")
     page.told("frame", is_in("ended"))
     server.communicate()
     assert server.returncode == 0
@@ -110,5 +111,6 @@ def test_a_log_that_is_being_written_is_followed(laboratory: Laboratory, stack: 
     page.asks(ask="live")
     assert page.orders("stop")["accepted"]
     server.communicate()
+    page.asks(ask="live")
     assert page.told("frame", is_in("ended"))
     page.told("state", lambda state: state["source"] == "the whole log is read")
