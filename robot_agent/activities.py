@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from robot_agent.drivers.kinematics import STOPPED, WheelSpeeds
 from robot_agent.inbox import AgentInbox
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from robot_agent.imitation.visit import BeginVisit, Visit
 
 
-@dataclass(frozen=True, slots=True)
-class Seen:
+class Seen(NamedTuple):
     """What one tick shows: the time, the robot's own pose, and how old the fix under it is."""
 
     t_ns: int
@@ -31,8 +30,7 @@ class Seen:
     pose_age_s: float
 
 
-@dataclass(frozen=True, slots=True)
-class Acted:
+class Acted(NamedTuple):
     """What an activity makes of a tick: wheel speeds, what follows it, and the move that has just ended."""
 
     speeds: WheelSpeeds

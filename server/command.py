@@ -13,7 +13,13 @@ from pathlib import Path
 from rich.console import Console
 
 from server.interrupted_run import InterruptedRun
-from server.processes.environment import Environment, laboratory, require_emulation, simulated
+from server.processes.environment import (
+    Environment,
+    laboratory,
+    require_emulation,
+    require_tracker,
+    simulated,
+)
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
@@ -27,6 +33,7 @@ from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.runtime.process import OneLineParser, add_protection_arguments, session_settings
 from swarm.runtime.zenoh_session import Session
+from swarm.services.notification import ServiceManager
 from swarm.signals import leave_on_signals
 
 RUN_ID_BYTES = 6
@@ -51,9 +58,11 @@ def conduct(asked: argparse.Namespace) -> None:
             robots = [robot.id for robot in plan.experiment.robot]
             settings = session_settings(asked, asked.listen, hub=True, limits=limits(robots))
             session = open_session.enter_context(Session(settings))
+            manager = ServiceManager.of_environment()
+            manager.ready()
             trials = [plan.trial]
             _warn_of_bad(plan.experiment, progress)
-            environment = partial(laboratory, plan.experiment, session, progress.warn)
+            environment = partial(laboratory, plan.experiment, session, progress.warn, manager.going_on)
         directory = plan.directory or RunDirectory.create(asked.out, plan.experiment.run.name)
         run = Run(plan.experiment, plan.file, directory, environment, trials, progress, plan.run_id)
         summary = run.run()
@@ -97,6 +106,7 @@ def _check(asked: argparse.Namespace, experiment: Experiment) -> None:
     else:
         require_good(asked.experiment, findings(experiment, asked.out))
         require_emulation(experiment, asked.speed, emulate=asked.emulate)
+        require_tracker(experiment, asked.speed)
 
 
 def _refuse_speed(asked: argparse.Namespace) -> None:

@@ -70,7 +70,9 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
             os.fsync(file.fileno())
         temporary.replace(path)
     except OSError as error:
-        raise RunFailedError(f"{path} cannot be written ({error}); what was finished is kept") from error
+        raise RunFailedError(
+            f"{path} cannot be written ({error.strerror or error}); what was finished is kept"
+        ) from error
     finally:
         temporary.unlink(missing_ok=True)
     return path

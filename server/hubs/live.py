@@ -109,17 +109,17 @@ class LiveHub:
         t_ns = next(self._ticks)
         if not self._ended:
             self._check()
-        items = [*self._early, *self._received()]
-        self._early.clear()
+        items = self._waiting()
         self._clocks.step(items, self._clock.now_ns())
         return Batch(t_ns, items)
 
     def unsent(self) -> Batch:
         """What has arrived by now, and what the server has said."""
-        return Batch(self._clock.now_ns(), self._received())
+        return Batch(self._clock.now_ns(), self._waiting())
 
     def finish(self) -> Batch:
         """The run's state ENDED has told the processes already: wait until they have given account."""
+        self._attendance.look()
         there = [one.epoch for kind in ("robot", "tracker") for one in present(self._session, kind)]
         leaving = {epoch for epoch in there if self._admission.knows(epoch)}
         deadline_s = time.monotonic() + LAST_WORDS_S
@@ -149,6 +149,12 @@ class LiveHub:
         self.publish(topics.SERVER_EVENT, pb.Event(level=level, name=name, text=text))
         if level != pb.Event.INFO:
             self._warn(text)
+
+    def _waiting(self) -> list[Item]:
+        """What no batch has held yet: from before the trial began, and what has come since the last."""
+        items = [*self._early, *self._received()]
+        self._early.clear()
+        return items
 
     def _received(self) -> list[Item]:
         """A sender's presence arrives before its first message, and so is looked at after the messages."""

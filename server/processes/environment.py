@@ -26,6 +26,7 @@ from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import REAL_LINKS, Experiment
 from swarm.errors import UserError
 from swarm.parallel import available_cores
+from swarm.plugins import TRACKERS, plugins
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import patient
@@ -121,6 +122,16 @@ def require_emulation(experiment: Experiment, speed: float | None, *, emulate: b
         raise UserError(f"--emulate: no robot's driver is one of {', '.join(REAL_LINKS)}")
 
 
+def require_tracker(experiment: Experiment, speed: float | None) -> None:
+    """UserError for a tracking system that goes by a time of its own, which a lockstep does not wait for."""
+    name = experiment.tracker.backend
+    if speed is None and plugins(TRACKERS)[name].load().poll_s is not None:
+        raise UserError(
+            f'[tracker] backend is {name!r}, which has a time of its own: a simulation needs "sim", or '
+            f"--speed X and a program that plays {name}"
+        )
+
+
 def _hub_settings(endpoint: str, pace: Pace) -> SessionSettings:
     settings = SessionSettings(endpoint, hub=True)
     return patient(settings) if pace.lockstep else settings
@@ -167,12 +178,16 @@ def laboratory(
     experiment: Experiment,
     session: Session,
     warn: Warn,
+    going_on: Callable[[], None],
     plan: TrialPlan,
 ) -> Iterator[TrialEnvironment]:
-    """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
+    """Robots and a tracker bridge that others start: the server waits for them, and people carry robots.
+
+    They are not ours to check: who is missing shows by presence and health. `going_on` is called every tick.
+    """
     presence = _presence(plan.identity)
     claim(session, presence)
-    hub = LiveHub(session, unix_clock(), experiment, plan.identity, _nothing_to_check, warn, presence.epoch)
+    hub = LiveHub(session, unix_clock(), experiment, plan.identity, going_on, warn, presence.epoch)
     reporter = Reporter(hub)
     prompts = Prompts()
     carrier, flush_every = Operator(reporter, warn, prompts), _live_flush(experiment, 1.0)
@@ -185,7 +200,3 @@ def _presence(identity: RunIdentity) -> Presence:
 
 def _live_flush(experiment: Experiment, speed: float) -> int:
     return max(1, round(LIVE_FLUSH_S * speed / experiment.simulation.tick_s))
-
-
-def _nothing_to_check() -> None:
-    """The laboratory's processes are not ours: who is missing shows by presence and health."""

@@ -11,6 +11,7 @@ from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
 from swarm.cli.console import console_command
+from swarm.cli.deploy import deploy_command
 from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
 from swarm.cli.export import export_command
@@ -72,6 +73,7 @@ app.command("check")(check_command)
 app.command("recover")(recover_command)
 app.command("replay")(replay_command)
 app.command("export")(export_command)
+app.command("deploy")(deploy_command)
 app.add_typer(lab_app, name="lab")
 
 

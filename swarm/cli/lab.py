@@ -10,6 +10,7 @@ import typer
 
 from swarm.cli.output import print_findings, print_json
 from swarm.cli.values import good_place
+from swarm.extras import require_extra
 
 LABORATORY_FILE = "lab.toml"
 
@@ -44,6 +45,9 @@ def init_command(
 def check_command(
     laboratory: LaboratoryFile,
     experiment: Annotated[Path | None, typer.Argument(help="An experiment that is to run there.")] = None,
+    reach: Annotated[
+        bool, typer.Option("--reach", help="Ask every machine what it runs, and what time it has.")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Look at a laboratory file, and at whether an experiment fits its robots.
@@ -54,13 +58,20 @@ def check_command(
     from swarm.checkup.laboratory import fit_findings, laboratory_findings
     from swarm.config.experiment import Experiment
     from swarm.config.laboratory import Laboratory
+    from swarm.runtime.versions import versions
 
     lab = Laboratory.load(laboratory)
     found = list(laboratory_findings(lab))
     if experiment:
         found += fit_findings(lab, Experiment.load(experiment))
+    if reach:
+        require_extra("deploy", "asyncssh", "packaging")
+        from swarm.deployment.standing import standing_findings
+
+        found += standing_findings(lab)
     if json:
-        print_json({"laboratory": str(laboratory), "findings": [finding.as_json() for finding in found]})
+        shown = [finding.as_json() for finding in found]
+        print_json({"laboratory": str(laboratory), "versions": versions(), "findings": shown})
     else:
         print_findings(found)
     if any_bad(found):
@@ -90,8 +101,6 @@ def keys_command(
     What is there is kept. Each process is given its own folder with --credentials, and nobody the folder
     `keys/authority`. Rules hold from the server's next start.
     """
-    from swarm.extras import require_extra
-
     require_extra("lab", "cryptography")
     from datetime import UTC, datetime
 

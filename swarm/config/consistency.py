@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from swarm.config.ids import check_id, check_robot_id
-from swarm.config.limits import BEYOND_CORNER_M
+from swarm.config.limits import BEYOND_CORNER_M, MOST_FRAMES
 from swarm.config.toml_files import ConfigFile
 from swarm.errors import nearest
 
@@ -48,6 +49,7 @@ def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, f
         raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {whom}")
     if robot.watches:
         _check_observers_place(experiment, robot, file)
+        _check_frames(experiment, file)
 
 
 def _check_observers_place(experiment: Experiment, robot: RobotSettings, file: ConfigFile) -> None:
@@ -59,6 +61,17 @@ def _check_observers_place(experiment: Experiment, robot: RobotSettings, file: C
             where,
             f"{robot.id!r} would watch {robot.watches!r} from ({place.x_m:.2f}, {place.y_m:.2f}) m, which is "
             f"off the floor: leave {BEYOND_CORNER_M:g} m east and south of that compartment",
+        )
+
+
+def _check_frames(experiment: Experiment, file: ConfigFile) -> None:
+    visits = experiment.visits
+    frames = math.ceil(visits.duration_s * visits.frames_per_s)
+    if frames > MOST_FRAMES:
+        raise file.error(
+            ("visits", "duration_s"),
+            f"{visits.duration_s:g} s at {visits.frames_per_s:g} frames a second are {frames} frames of a "
+            f"visit, which holds at most {MOST_FRAMES}: watch for less long, or look less often",
         )
 
 

@@ -182,7 +182,7 @@ class VisitSettings:
     every_tracks: Annotated[int, Between(1, 100_000)] = 10
     """A learner visits at the start and after so many journeys, until its memory is full."""
     duration_s: Annotated[float, Between(1, 600)] = 30.0
-    """How long a learner watches."""
+    """How long a learner watches; with `frames_per_s` for at most 500 frames."""
     frames_per_s: Annotated[float, Between(0.5, 30)] = 5.0
     """Camera frames that are looked at while watching."""
     moves: Annotated[int, Between(1, 100)] = 5
@@ -320,6 +320,10 @@ class Experiment:
         if processes is not None:
             simulation = replace(simulation, processes=processes)
         return replace(self, run=run, simulation=simulation)
+
+    def seen_by(self, calibration: Path) -> Experiment:
+        """The same experiment for a board whose camera is calibrated by a file of its own."""
+        return replace(self, camera=replace(self.camera, calibration=str(calibration)))
 
     def compartment(self, robot: RobotSettings) -> Compartment:
         """The walled square that belongs to a robot."""

@@ -20,8 +20,6 @@ class Services(StrEnum):
 
     SYSTEM = "systemd"
     """systemd; the user has to be root, or one who may call systemctl by sudo without a password."""
-    USER = "systemd-user"
-    """The user's own systemd; needs `loginctl enable-linger` once."""
     SUPERVISED = "supervised"
     """A supervisor of this package, for machines without systemd; it ends with the machine."""
 

@@ -22,6 +22,10 @@ _PATTERNS = {
 """What each name of a machine may be: nothing that a shell, ssh or a systemd unit reads as its own."""
 
 
+_WORD = re.compile(r"[A-Za-z0-9._:/-]*")
+"""What goes into a unit's command: one word, and none that systemd reads as its own."""
+
+
 def check_laboratory(laboratory: Laboratory, file: ConfigFile) -> None:
     """UserError, with its line in the file, about what no single value shows."""
     check_id(laboratory.laboratory.name, ("laboratory", "name"), file)
@@ -54,6 +58,10 @@ def _check_robot(laboratory: Laboratory, number: int, robot: RobotMachine, file:
     check_robot_id(robot.id, (*where, "id"), file)
     if any(other.id == robot.id for other in laboratory.robot[:number]):
         raise file.error((*where, "id"), f"two robots are called {robot.id!r}")
+    for name in ("driver", "address"):
+        if not _WORD.fullmatch(getattr(robot, name)):
+            text = f"{name!r} is {getattr(robot, name)!r}; it may have letters, digits, and . _ : / -"
+            raise file.error((*where, name), text)
     if robot.calibration and not robot.calibration.is_file():
         raise file.error((*where, "calibration"), f"{robot.calibration}: there is no such file")
 

@@ -120,8 +120,10 @@ class LiveNode:
         epoch: int,
         run_id: str = "",
         say: Callable[[str], None] = lambda text: None,  # noqa: ARG005
+        going_on: Callable[[], None] = lambda: None,
     ) -> None:
         self.run_id = run_id
+        self._going_on = going_on
         self._session = session
         self._say = say
         self._server = ServerWatch(session.presence_watch(ALIVE_SERVER), say)
@@ -159,6 +161,7 @@ class LiveNode:
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):
+            self._going_on()
             self._server.look()
             self._take_in()
             states = [state.message for state in self._run_states.take()]

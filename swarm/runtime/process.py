@@ -13,7 +13,7 @@ import socket
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -30,6 +30,7 @@ from swarm.runtime.liveliness import NO_IDENTITY, Presence, claim
 from swarm.runtime.lockstep import EPOCH, LockstepNode, patient
 from swarm.runtime.node import LiveNode, Node
 from swarm.runtime.zenoh_session import Session, SessionSettings
+from swarm.services.notification import ServiceManager
 from swarm.version import version_text
 
 PR_SET_PDEATHSIG = 1
@@ -125,19 +126,23 @@ def joined(
     settings = session_settings(arguments, arguments.connect)
     if arguments.lockstep:
         settings = patient(settings)
-    say = _say_nothing if arguments.supervised else _say
+    manager = ServiceManager.of_environment()
+    manager.ready()
+    say = _say_nothing if arguments.supervised else partial(_say_and_tell, manager)
     shown = str(identity.fingerprint) if identity else NO_IDENTITY
-    with Session(settings, partial(say, f"waiting for the server at {settings.endpoint}")) as session:
+    waiting = Waiting(manager, partial(say, f"waiting for the server at {settings.endpoint}"))
+    with Session(settings, waiting.moment) as session:
         for name in names:
             claim(session, Presence(kind, name, socket.gethostname(), epoch, shown))
         if arguments.lockstep:
             yield LockstepNode(session, arguments.process)
         else:
-            run_id = agreed_run(session, identity, unix_clock()) if identity else ""
+            going_on = manager.going_on
+            run_id = agreed_run(session, identity, unix_clock(), going_on) if identity else ""
             say(f"connected to the server at {settings.endpoint}")
             simulated = arguments.started_ns
             clock = scaled_clock(simulated, arguments.speed) if simulated else unix_clock()
-            node = LiveNode(session, clock, period_s, epoch, run_id, say)
+            node = LiveNode(session, clock, period_s, epoch, run_id, say, going_on)
             try:
                 yield node
             finally:
@@ -162,6 +167,27 @@ def _await_parents_end() -> None:
     os.kill(os.getpid(), signal.SIGTERM)
     threading.Event().wait(LEAVE_WITHIN_S)
     os._exit(1)
+
+
+class Waiting:
+    """For a server that is not there yet: said once, while the service's manager hears that it goes on."""
+
+    def __init__(self, manager: ServiceManager, say: Callable[[], None]) -> None:
+        self._manager = manager
+        self._say = say
+        self._said = False
+
+    def moment(self) -> None:
+        """One more moment has passed."""
+        self._manager.going_on()
+        if not self._said:
+            self._said = True
+            self._say()
+
+
+def _say_and_tell(manager: ServiceManager, text: str) -> None:
+    _say(text)
+    manager.about(text)
 
 
 def _say(text: str) -> None:

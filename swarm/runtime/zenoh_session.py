@@ -146,18 +146,22 @@ class Publisher:
         """Zenoh's own, without a call in between, which would show in the pace of a lockstep."""
 
 
+ZENOH_SAYS = "error,zenoh::api::session=off"
+"""A session that closes calls it an error that messages were still on their way to it."""
+
+
 class Session:
     """A Zenoh session, closed at the end of its block or of the process.
 
-    To open one may take for ever where the server is not there yet: `waiting` is called once if it takes
-    longer than a moment, and signals are obeyed meanwhile.
+    To open one may take for ever where the server is not there yet: `waiting` is called once a second
+    meanwhile, and signals are obeyed.
     """
 
     def __init__(self, settings: SessionSettings, waiting: Callable[[], None] = lambda: None) -> None:
         os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
         import zenoh
 
-        zenoh.init_log_from_env_or("error")
+        zenoh.init_log_from_env_or(ZENOH_SAYS)
         self.endpoint = settings.endpoint
         self._zenoh = zenoh
         self._tokens: list[zenoh.LivelinessToken] = []

@@ -66,6 +66,8 @@ def test_an_address_with_colons_gets_brackets(tmp_path: Path) -> None:
         ('driver = "i2c"', 'driver = "i2c"\ndirectory = "a b"', 14, "'directory'"),
         ('driver = "i2c"', 'driver = "i2c"\ndirectory = "a%h"', 14, "'directory'"),
         ('driver = "i2c"', 'driver = "i2c"\npython = "python3 -c x"', 14, "'python'"),
+        ('driver = "i2c"', 'driver = "i2c"\naddress = "4 --state /etc"', 14, "'address'"),
+        ('driver = "i2c"', 'driver = "i2c"\naddress = "$HOME"', 14, "'address'"),
         ('"r1"', '"r1/../r2"', 11, "an id starts with"),
         ('"r1"', '"run"', 11, "keys that name no robot"),
         ('"r2"', '"r1"', 18, "two robots are called 'r1'"),
