@@ -9,7 +9,7 @@ from swarm.clock import NS_PER_S
 from swarm.console.learning_history import PathCounts
 from swarm.console.robot_history import RobotHistory
 from swarm.console.run_history import RunHistory
-from swarm.geometry import Move
+from swarm.geometry import Move, Pose
 
 RATIO_POINTS = 150
 """Of R over time: as many as a small plot has pixels."""
@@ -85,7 +85,7 @@ def observation_view(history: RunHistory, name: str, visit: int) -> dict[str, An
 def _look(history: RunHistory, robot: RobotHistory, look: Any) -> dict[str, Any]:
     t_s = (look.captured_t_ns - history.began_ns) / NS_PER_S
     demonstrator = history.robots.get(robot.settings.watches)
-    own, other = robot.track.at(t_s), demonstrator.track.at(t_s) if demonstrator else None
+    own, other = robot.track.between(t_s), demonstrator.track.between(t_s) if demonstrator else None
     return {
         "t_s": round(t_s, 2),
         "hash": f"{look.frame_hash:016x}",
@@ -93,12 +93,12 @@ def _look(history: RunHistory, robot: RobotHistory, look: Any) -> dict[str, Any]
         "range_m": round(look.range_m, 3),
         "bearing_rad": round(look.bearing_rad, 4),
         "why_not": look.not_seen,
-        "own": _rounded(own[1]) if own else None,
-        "tracked": _rounded(other[1]) if other else None,
+        "own": _rounded(own) if own else None,
+        "tracked": _rounded(other) if other else None,
     }
 
 
-def _rounded(pose: Any) -> list[float]:
+def _rounded(pose: Pose) -> list[float]:
     return [round(pose.x_m, 3), round(pose.y_m, 3), round(pose.theta_rad, 3)]
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from swarm.config.experiment import Experiment, RobotSettings
 from swarm.console.learning_history import LearningHistory
-from swarm.geometry import Pose
+from swarm.geometry import Pose, wrap_angle_rad
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header
 
@@ -81,7 +81,25 @@ class Track:
         place = bisect_right(self.t_s, t_s) - 1
         if place < 0:
             return None
-        return self.t_s[place], Pose(self.x_m[place], self.y_m[place], self.theta_rad[place])
+        return self.t_s[place], self._pose(place)
+
+    def between(self, t_s: float) -> Pose | None:
+        """Where it was at a time, on the line between the poses before and after."""
+        place = bisect_right(self.t_s, t_s)
+        if not 0 < place < len(self.t_s):
+            found = self.at(t_s)
+            return found[1] if found else None
+        before, after = self._pose(place - 1), self._pose(place)
+        share = (t_s - self.t_s[place - 1]) / (self.t_s[place] - self.t_s[place - 1])
+        turn_rad = wrap_angle_rad(after.theta_rad - before.theta_rad)
+        return Pose(
+            before.x_m + share * (after.x_m - before.x_m),
+            before.y_m + share * (after.y_m - before.y_m),
+            wrap_angle_rad(before.theta_rad + share * turn_rad),
+        )
+
+    def _pose(self, place: int) -> Pose:
+        return Pose(self.x_m[place], self.y_m[place], self.theta_rad[place])
 
     def count(self, since_s: float, until_s: float) -> int:
         """Poses after the one time, up to the other."""

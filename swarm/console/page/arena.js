@@ -1,7 +1,7 @@
 // The arena from above: compartments, cells, what was learnt, trails, paths, visits, robots.
 
 import { arrow, label, line, prepared } from "./canvas.js";
-import { between, colours, robotColour, skirtColour } from "./colours.js";
+import { colours, robotColour, skirtColour } from "./colours.js";
 import { drawBest } from "./q_table.js";
 import { COLUMNS, ROWS } from "./run.js";
 
@@ -9,11 +9,14 @@ const ROBOT_M = 0.037; // an e-puck's radius
 const SKIRT_M = 0.05; // of the paper skirt around a demonstrator
 const VIEW_RAD = (53 * Math.PI) / 180; // an e-puck camera's field of view
 const MARGIN_PX = 6;
+const FINE_PX = 8; // of a cell: below it lines and letters would be a grey blur
 
 /** Draws the arena; `still` keeps what does not move between two frames. */
 export class Arena {
-  constructor(canvas) {
+  /** `choose` is called with a learner whose compartment is pressed. */
+  constructor(canvas, choose) {
     this.canvas = canvas;
+    canvas.addEventListener("click", (event) => this.#choose(event, choose));
     this.still = document.createElement("canvas");
     this.stillOf = "";
   }
@@ -25,20 +28,28 @@ export class Arena {
     this.bottom = (height + arena.height_m * this.scale) / 2;
   }
 
+  #choose(event, choose) {
+    const [x, y] = [(event.offsetX - this.left) / this.scale, (this.bottom - event.offsetY) / this.scale];
+    const robot = this.robots?.find((each) => each.west_m <= x && x <= each.east_m && each.south_m <= y && y <= each.north_m);
+    if (robot?.role === "learner") choose(robot.id);
+  }
+
   #at = ([x, y]) => [this.left + x * this.scale, this.bottom - y * this.scale];
 
   draw(run, nowMs, options) {
     const { context, width, height } = prepared(this.canvas);
     if (!run.about || width === 0) return;
+    this.robots = run.about.robots;
     this.#fit(run.about.arena, width, height);
     this.#drawStill(run, width, height);
     context.drawImage(this.still, 0, 0, width, height);
     if (!run.frame) return;
+    this.#drawChosen(context, run.robot(run.state.selected));
     if (options.heat) this.#drawLearnt(context, run);
     for (const robot of run.about.robots) {
       const now = run.frame.robots[robot.id];
       if (options.trails) this.#drawTrail(context, run, robot);
-      if (now.path) this.#drawPath(context, run, robot, now.path);
+      if (now.path?.moves.length) this.#drawPath(context, run, robot, now.path);
     }
     for (const robot of run.about.robots) {
       const pose = run.poseNow(robot.id, nowMs);
@@ -86,6 +97,12 @@ export class Arena {
     context.fillRect(left, top, columns * cell, rows * cell);
     context.strokeStyle = theme["cell-line"];
     context.lineWidth = 1;
+    if (cell < FINE_PX) {
+      context.strokeStyle = theme.wall;
+      context.lineWidth = 1;
+      context.strokeRect(left, top, columns * cell, rows * cell);
+      return;
+    }
     for (let column = 1; column < columns; column++) line(context, [[left + column * cell, top], [left + column * cell, top + rows * cell]]);
     for (let row = 1; row < rows; row++) line(context, [[left, top + row * cell], [left + columns * cell, top + row * cell]]);
     context.strokeStyle = theme.wall;
@@ -109,6 +126,16 @@ export class Arena {
       const [left, top] = this.#at([robot.west_m, robot.north_m]);
       drawBest(context, learner.q_table, columns, left, top, side * this.scale, 0.55);
     }
+  }
+
+  /** The compartment of the robot whose learning is shown beside. */
+  #drawChosen(context, robot) {
+    if (!robot) return;
+    const [left, top] = this.#at([robot.west_m, robot.north_m]);
+    const side = [(robot.east_m - robot.west_m) * this.scale, (robot.north_m - robot.south_m) * this.scale];
+    context.strokeStyle = colours().accent;
+    context.lineWidth = 3;
+    context.strokeRect(left, top, ...side);
   }
 
   #drawTrail(context, run, robot) {

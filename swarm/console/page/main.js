@@ -15,7 +15,7 @@ import { Steering } from "./steering.js";
 
 const run = new Run();
 const ask = connect(hear, tell);
-const arena = new Arena(byId("arena"));
+const arena = new Arena(byId("arena"), choose);
 const qTable = new QTable(byId("q-table"), byId("q-words"));
 const memory = new Memory(byId("memory"), ask);
 const curves = new Curves(byId("curves"), byId("curves-legend"));
@@ -29,7 +29,7 @@ let trouble = "connecting";
 /** What a message changes has to be drawn again. */
 const DRAWS = {
   about: ["all"],
-  state: ["player", "source", "learner", "steering"],
+  state: ["player", "source", "learner", "steering", "arena"],
   frame: ["arena", "frame", "slow"],
   growth: ["curves", "visits", "events", "player"],
   learner: ["learner", "arena"],

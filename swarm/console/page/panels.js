@@ -6,18 +6,28 @@ import { clock, inWords } from "./run.js";
 
 const STALE_S = 1; // a robot stands when its pose is older
 const LOW_BATTERY_V = 3.4; // an e-puck's motors fail below it
+const MOST_BUTTONS = 9; // as many as there are keys for
 const MOST_EVENTS = 200; // in the list: the newest of those that have happened
 
-/** A button for each learner. */
+/** A button for each learner; of many learners a list. */
 export function drawLearners(run, choose) {
   const learners = run.about.robots.filter((robot) => robot.role === "learner");
+  if (learners.length > MOST_BUTTONS) {
+    const options = learners.map((robot) => element("option", { value: robot.id }, `${robot.id} (${robot.condition})`));
+    const list = element("select", { "aria-label": "Robot", onchange: () => choose(list.value) }, ...options);
+    byId("learners").replaceChildren(list);
+    pressLearner(run);
+    return;
+  }
   byId("learners").replaceChildren(
     ...learners.map((robot) => {
       const dot = element("canvas", { class: "dot", width: 10, height: 10, "aria-hidden": "true" });
       const context = dot.getContext("2d");
       context.fillStyle = robotColour(run.number(robot.id));
-      context.arc(5, 5, 5, 0, 2 * Math.PI);
+      context.strokeStyle = "#ffffff";
+      context.arc(5, 5, 4.5, 0, 2 * Math.PI);
       context.fill();
+      context.stroke();
       const button = element("button", { type: "button", "data-robot": robot.id, onclick: () => choose(robot.id) }, dot, robot.id);
       return button;
     }),
@@ -26,7 +36,10 @@ export function drawLearners(run, choose) {
 }
 
 export function pressLearner(run) {
-  for (const button of byId("learners").children) button.setAttribute("aria-pressed", String(button.dataset.robot === run.state.selected));
+  for (const choice of byId("learners").children) {
+    if (choice.matches("select")) choice.value = run.state.selected;
+    else choice.setAttribute("aria-pressed", String(choice.dataset.robot === run.state.selected));
+  }
 }
 
 /** A button for each visit of the chosen robot, to its beginning. */

@@ -104,7 +104,7 @@ export class Player {
       l: () => this.run.state.is_live && this.ask({ ask: "live" }),
       "?": () => byId("help").showModal(),
     }[event.key];
-    const learner = byId("learners").children[Number(event.key) - 1];
+    const learner = byId("learners").querySelectorAll("button")[Number(event.key) - 1];
     if (!frame || !(act || learner)) return;
     event.preventDefault();
     act ? act() : learner.click();
