@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_right
+from collections import defaultdict
 from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeVar
 
@@ -141,7 +142,7 @@ class RobotHistory:
         self.visits: list[VisitAt] = []
         self.observations: list[ObservationAt] = []
         self.copy_errors: list[CopyErrorAt] = []
-        self.numbers: dict[str, Numbers] = {}
+        self.numbers: dict[str, Numbers] = defaultdict(Numbers)
         """By key."""
 
     @property

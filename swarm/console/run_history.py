@@ -10,7 +10,7 @@ from google.protobuf.message import Message
 
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
-from swarm.console.robot_history import CopyErrorAt, Numbers, ObservationAt, RobotHistory
+from swarm.console.robot_history import CopyErrorAt, ObservationAt, RobotHistory
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Item
@@ -106,7 +106,7 @@ class RunHistory:
             return
         self.messages += 1
         if robot:
-            robot.numbers.setdefault(item.key, Numbers()).add(item.header)
+            robot.numbers[item.key].add(item.header)
         try:
             self._add(self._seconds(t_ns), topic, robot, decode(topic.message, item.payload), name)
         except BadMessageError:

@@ -71,19 +71,21 @@ class LogFollower:
     def read(self) -> Iterator[list[Timed]]:
         """What is new, a chunk at a time. LogError if the log is damaged before its end."""
         while not self.ended:
+            size = size_of(self._file)  # Looked at first: a chunk that grows meanwhile is still the last.
             try:
-                frame = frame_at(self._file, self._at, size_of(self._file))
+                frame = frame_at(self._file, self._at, size)
                 found = self._of(frame)
             except (FramingError, *BROKEN) as error:
                 self._forgive(error)
                 return
+            is_last = frame.end_bytes >= size
+            if not is_last:
+                self.ended = frame.opcode == Opcode.DATA_END
+                self._at, self._taken = frame.end_bytes, {}
             if found:
                 yield found
-            if frame.end_bytes >= size_of(self._file):
+            if is_last:
                 return
-            if frame.opcode == Opcode.DATA_END:
-                self.ended = True
-            self._at, self._taken = frame.end_bytes, {}
 
     def _forgive(self, error: Exception) -> None:
         """What is being written may be cut off anywhere. Before the end of a closed log nothing may."""
