@@ -88,7 +88,10 @@ class Plan:
 
 
 class Planner:
-    """Plans for machines; with `run` the experiment is to begin at once. Wheels are fetched for one machine at a time: the next of its kind finds them."""
+    """Plans for machines; with `run` the experiment is to begin at once.
+
+    Wheels are fetched for one machine at a time: the next of its kind finds them.
+    """
 
     def __init__(
         self,
