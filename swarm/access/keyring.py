@@ -26,7 +26,8 @@ from swarm.access.authority import Authority, Signed, common_name, hosts_of, val
 from swarm.access.credentials import ACCESS_FILE, AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE, tls
 from swarm.access.identities import SERVER, Identity, identities
 from swarm.access.rights import rights_of
-from swarm.access.zenoh_rules import access_control, limits
+from swarm.access.zenoh_limits import limits
+from swarm.access.zenoh_rules import access_control
 from swarm.config.laboratory import Laboratory
 from swarm.errors import UserError, nearest
 from swarm.files import make_folder, write_json, write_whole

@@ -20,6 +20,7 @@ import pytest
 import zenoh
 
 from swarm.access.identities import TRACKER, VIEWER
+from swarm.access.zenoh_limits import hub_limits
 from swarm.errors import UserError
 from swarm.messages import topics
 from swarm.messages.topics import ACCOUNT, ASKED_BY, LOCKSTEP_DONE, TABLE, Delivery, Role, topic_of
@@ -252,3 +253,31 @@ def test_a_router_of_its_own_takes_the_same_rules(
             told += [sample.payload for sample in moves.poll()]
         assert robot.ask("run/identity", 5.0) == [TRUE]
         assert forged.poll() == []
+
+
+def test_without_certificates_too_nobody_else_is_the_server() -> None:
+    """Everything is open there, but what the server says comes from the server's own session."""
+    endpoint = free_endpoint()
+    servers = {topic.key(robot) for topic in TABLE if topic.sender is Role.SERVER for robot in ROBOTS}
+    token = topics.ALIVE.format(kind="server", name="server", host="h", epoch="7", identity="x")
+    with (
+        Session(SessionSettings(endpoint, hub=True, limits=hub_limits(ROBOTS))) as hub,
+        Session(SessionSettings(endpoint)) as client,
+        Session(SessionSettings(endpoint)) as victim,
+    ):
+        heard, hub_heard = victim.inbox("**", Delivery.EVERY), hub.inbox("**", Delivery.EVERY)
+        client.declare_alive(token)
+        for key in ASKED_BY:
+            client.answer(key, FORGED)
+        own = client.publisher("robot/r0/move", Delivery.EVERY)
+        came: set[str] = set()
+        while "robot/r0/move" not in came:
+            for key in (*servers, "**", "robot/**", "*/r0/*"):
+                client.publisher(key, Delivery.EVERY).put(FORGED)
+            own.put(TRUE)
+            came |= {sample.key for inbox in (heard, hub_heard) for sample in inbox.poll()}
+        Event().wait(SETTLE_S)
+        came |= {sample.key for inbox in (heard, hub_heard) for sample in inbox.poll()}
+        assert came == {"robot/r0/move"}
+        assert victim.alive("alive/**") == []
+        assert [victim.ask(key, SETTLE_S) for key in ASKED_BY] == [[] for _ in ASKED_BY]
