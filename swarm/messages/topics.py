@@ -128,6 +128,14 @@ MOVE = Topic("robot/{robot}/move", pb.Move, "one transition learnt", None, Deliv
 BEST_PATH = Topic("robot/{robot}/best_path", pb.BestPath, "every ten moves", None, Delivery.EVERY, True)
 PATH = Topic("robot/{robot}/path", pb.PathRemembered, "a path entered the memory", None, Delivery.EVERY, True)
 REPLAY = Topic("robot/{robot}/replay", pb.Replay, "a replay ended", None, Delivery.EVERY, True)
+BEST_MOVES = Topic(
+    "robot/{robot}/best_moves",
+    pb.BestMoves,
+    "its internal state, if another may access it",
+    None,
+    Delivery.EVERY,
+    True,
+)
 STATUS = Topic("robot/{robot}/status", pb.Status, "activity and health", 1.0, Delivery.NEWEST, True)
 EVENT = Topic("robot/{robot}/event", pb.Event, "what a person should know", None, Delivery.EVERY, True)
 TRACKER_EVENT = Topic(
@@ -173,6 +181,7 @@ TABLE: tuple[Topic[Any], ...] = (
     BEST_PATH,
     PATH,
     REPLAY,
+    BEST_MOVES,
     STATUS,
     EVENT,
     VISIT,
