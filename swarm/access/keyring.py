@@ -63,14 +63,15 @@ class Keyring:
     def update(self, renew: Collection[str], revoke: Collection[str], now: datetime) -> list[Issued]:
         """Make what is missing, renew and revoke what is named, and write the rules anew.
 
-        "all" renews the authority too: then nobody with an older certificate is spoken with at all.
+        "all" renews the authority too: then nobody with an older certificate is spoken with at all. Whoever
+        was revoked stays so.
         """
         self._check_names(renew, revoke)
-        if ALL in renew:
-            renew = {ALL, *map(str, self._identities)}
         make_folder(self._folder)
         self._folder.chmod(0o700)
         revoked = (self._revoked() | set(revoke)) - set(renew)
+        if ALL in renew:
+            renew = {ALL, *map(str, self._identities)}
         authority = self._authority(ALL in renew, now)
         issued = [self._issue(one, authority, renew, revoked, now) for one in self._identities]
         write_json(sorted(revoked), self._folder / REVOKED_FILE)

@@ -12,11 +12,11 @@ from tests.support.certified import CertifiedLaboratory
 
 
 def test_a_folder_that_is_nobodys_is_told_of(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="authority.pem is not there; `swarm lab keys` makes them"):
+    with pytest.raises(UserError, match="is not there; `swarm lab keys` makes them"):
         zenoh_values(tmp_path, hub=False)
 
 
 def test_a_server_with_a_robots_folder_is_told_of(tmp_path: Path) -> None:
     laboratory = CertifiedLaboratory(tmp_path)
-    with pytest.raises(UserError, match="access.json is not there; the server's are needed here"):
+    with pytest.raises(UserError, match="is not there; the server's are needed here"):
         zenoh_values(laboratory.keys("robot-r0"), hub=True)
