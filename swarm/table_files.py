@@ -27,7 +27,6 @@ def as_parquet(table: pl.DataFrame | pl.LazyFrame, **options: Any) -> Callable[[
     """Writes a table into a file; OSError if the disk does not take it, for which polars has other words."""
     import polars as pl
 
-
     def write(path: Path) -> None:
         try:
             if isinstance(table, pl.LazyFrame):
