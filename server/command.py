@@ -23,7 +23,7 @@ from server.processes.environment import (
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
-from swarm.access.zenoh_rules import hub_limits
+from swarm.access.zenoh_limits import hub_limits
 from swarm.checkup.checkup import experiment_findings, findings
 from swarm.checkup.finding import Level, require_good
 from swarm.checkup.machine import room, writable
