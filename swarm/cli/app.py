@@ -10,6 +10,7 @@ import typer
 from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
+from swarm.cli.console import console_command
 from swarm.cli.deploy import deploy_command
 from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
@@ -24,6 +25,7 @@ from swarm.cli.run import run_command
 from swarm.cli.simulate import simulate_command
 from swarm.cli.status import status_command
 from swarm.cli.trials import trials_command
+from swarm.cli.watch import watch_command
 from swarm.errors import UserError
 from swarm.version import version_text
 
@@ -67,6 +69,8 @@ app.command("analyze")(analyze_command)
 app.command("trials")(trials_command)
 app.command("durations")(durations_command)
 app.command("info")(info_command)
+app.command("console")(console_command)
+app.command("watch")(watch_command)
 app.command("check")(check_command)
 app.command("recover")(recover_command)
 app.command("replay")(replay_command)

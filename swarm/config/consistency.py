@@ -13,14 +13,27 @@ from swarm.errors import nearest
 if TYPE_CHECKING:
     from swarm.config.experiment import Experiment, RobotSettings
 
+SECONDS_PER_HOUR = 3600
+
 
 def check_consistency(experiment: Experiment, file: ConfigFile) -> None:
     """UserError, with its line in the file, about what no single value shows."""
     check_id(experiment.run.name, ("run", "name"), file)
     if not experiment.learners:
         raise file.error(("robot", 0, "role"), "no robot is a learner: there is nothing to learn or to plot")
+    _check_blackouts(experiment, file)
     for number, robot in enumerate(experiment.robot):
         _check_robot(experiment, number, robot, file)
+
+
+def _check_blackouts(experiment: Experiment, file: ConfigFile) -> None:
+    tracker = experiment.tracker
+    if tracker.blackouts_per_hour * tracker.blackout_s > SECONDS_PER_HOUR:
+        raise file.error(
+            ("tracker", "blackout_s"),
+            f"{tracker.blackouts_per_hour:g} losses an hour of {tracker.blackout_s:g} s each are more than "
+            "the hour: a robot would be seen for hardly a moment; make them fewer or shorter",
+        )
 
 
 def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
