@@ -21,6 +21,7 @@ from swarm.cli.orders import done_command, estop_command, pause_command, resume_
 from swarm.cli.recover import recover_command
 from swarm.cli.replay import replay_command
 from swarm.cli.reproduce import reproduce_command
+from swarm.cli.run import run_command
 from swarm.cli.simulate import simulate_command
 from swarm.cli.status import status_command
 from swarm.cli.trials import trials_command
@@ -55,6 +56,7 @@ def _root(
 
 app.command("doctor")(doctor_command)
 app.command("simulate")(simulate_command)
+app.command("run")(run_command)
 app.command("status")(status_command)
 app.command("pause")(pause_command)
 app.command("resume")(resume_command)

@@ -152,8 +152,8 @@ class TrackerSettings:
     """How far the system's east is turned, counter-clockwise, from the arena's."""
     rate_hz: Annotated[float, Between(1, 1000)] = 10.0
     """Poses of each robot a second; a robot stands when the last is 1 s old."""
-    noise_m: Annotated[float, Between(0, 0.05)] = 0.001
-    """Standard deviation of x and of y."""
+    noise_m: Annotated[float, Between(0, 0.02)] = 0.001
+    """Standard deviation of x and of y; with more, poses look as if somebody carried the robot."""
     noise_rad: Annotated[float, Between(0, 1)] = 0.0087
     """Standard deviation of the heading."""
     latency_s: Annotated[float, Between(0, 0.5)] = 0.06
@@ -245,6 +245,9 @@ class RobotSettings:
     """Learners of one condition share a curve; the role's name if empty."""
     watches: str = ""
     """The robot whose moves it copies through its camera; none if empty."""
+    accesses: str = ""
+    """The learner whose internal state it may read (section 2.4); none if empty. Nothing else permits more
+    than observation between robots, and `swarm check --firewall` tells of it."""
     skirt: str = "red"
     """The colour of its skirt, by which others see it."""
     paths: tuple[tuple[str, ...], ...] = ()
@@ -374,6 +377,10 @@ class Experiment:
     def pose_lateness_s(self) -> float:
         """How old a simulated pose is when it leaves the tracker: it was an exchange on its way there."""
         return self.tracker.latency_s + (self.ticks_per_exchange + 1) * self.simulation.tick_s
+
+    def is_accessed(self, robot: RobotSettings) -> bool:
+        """Whether another may read a robot's internal state."""
+        return any(other.accesses == robot.id for other in self.robot)
 
     @property
     def learners(self) -> tuple[RobotSettings, ...]:

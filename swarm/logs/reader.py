@@ -137,7 +137,7 @@ def nothing(channel: LogChannel) -> bool:
 
 MAX_EPOCH = 2**63 - 1
 """The largest that the tables' signed columns hold."""
-SAID_ONCE = ("run", "robots", "experiment", "versions", "end", "sent")
+SAID_ONCE = ("run", "robots", "experiment", "versions", "end", "sent", "received")
 """Metadata of this project's recorder. Other programs give the same name to several records."""
 
 

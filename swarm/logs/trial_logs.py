@@ -72,6 +72,11 @@ def by_trial(logs: Iterable[LogIdentity]) -> list[list[LogIdentity]]:
     return [list(parts) for _, parts in groupby(logs, key=lambda log: log.trial_log)]
 
 
+def trials_of(path: Path) -> list[list[LogIdentity]]:
+    """The parts of each trial of a run directory, or of the one that a log holds."""
+    return by_trial(logs_in(path, [])) if path.is_dir() else [[identify(path)]]
+
+
 def as_one(part: Part, log: LogIdentity) -> Part:
     """A part of a log for a table over all logs of the trial: there a sender has one channel a key.
 
