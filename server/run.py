@@ -1,4 +1,4 @@
-"""A run: its trials one after the other, each in an environment of its own."""
+"""A run: its trials, each in an environment of its own, and what they leave behind."""
 
 from __future__ import annotations
 
@@ -11,19 +11,16 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from server.conductor.conductor import Conductor
-from server.conductor.earlier import earlier_progress
-from server.processes.environment import Environment, TrialPlan
+from server.experiment_text import experiment_bytes
+from server.processes.environment import Environment
 from server.progress import RunProgress
-from server.recording.foxglove_views import Views
-from server.recording.health import Health
-from server.recording.provenance import metadata, versions
-from server.recording.recorder import Recorder, digest
+from server.recording.provenance import versions
+from server.recording.recorder import digest
 from server.run_directory import MANIFEST, RunDirectory
-from server.trial import Trial, TrialResult
+from server.trial import TrialResult
+from server.trial_player import TrialPlayer, play_together
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, in_words
-from swarm.runtime.identity import RunIdentity
 
 
 @dataclass
@@ -39,7 +36,14 @@ class Run:
     progress: RunProgress
     run_id: str = ""
     """Random, and new with every run; empty in a lockstep, which nobody can join and anybody can repeat."""
-    results: list[TrialResult] = field(default_factory=list)
+    changes: Sequence[str] = ()
+    """What `--set` said in place of the file's values; the experiment has it."""
+    jobs: int = 1
+    """Trials at a time; more than one on simulated robots in lockstep alone."""
+    scheduler: str = "processes"
+    """Where those are played, if there are several at a time."""
+    results: dict[int, TrialResult] = field(default_factory=dict)
+    """By trial."""
     versions: dict[str, str] = field(default_factory=versions)
 
     def run(self) -> dict[str, Any]:
@@ -49,12 +53,10 @@ class Run:
 
     def _held(self) -> dict[str, Any]:
         began = time.monotonic()
-        copy = self._begin()
+        kept = self._begin()
         state = "interrupted"
         try:
-            for trial in self.trials:
-                self.progress.begin(trial)
-                self._trial(trial, copy)
+            self._play(kept)
             state = "complete"
         finally:
             self._write_manifest(state)
@@ -67,42 +69,40 @@ class Run:
         """What stands in the directory before the first trial; nothing is left if there is no room for it."""
         try:
             self.directory.reserve()
-            copy = self.directory.keep_experiment(self.file)
+            kept = self.directory.keep_experiment(experiment_bytes(self.file, self.changes))
             self._write_manifest("running")
         except OSError as error:
             self.directory.remove()
             raise UserError(f"{self.directory.path}: {in_words(error)}") from error
-        return copy
+        return kept
 
-    def _trial(self, trial: int, file: Path) -> None:
-        """Also of a trial that is interrupted it is known how far it came."""
-        program = self.versions["swarm-runtime"]
-        identity = RunIdentity.of(self.experiment, trial, self.run_id, program)
-        plan = TrialPlan(identity, file, self.directory.output(trial))
-        with self.environment(plan) as environment:
-            reporter = environment.reporter
-            *before, log = self.directory.logs(trial)
-            earlier = earlier_progress(before)
-            conductor = Conductor(self.experiment, identity, reporter, environment.carrier, earlier)
-            about = metadata(self.experiment, file, identity, self.versions, self.directory.part)
-            recorder = Recorder(log, about)
-            health, views = Health(reporter), Views(self.experiment)
-            played = Trial(environment, conductor, recorder, health, views, self.progress.show)
-            try:
-                played.run()
-            finally:
-                self.results.append(played.result())
+    def _play(self, file: Path) -> None:
+        """One after the other, or several at a time."""
+        player = TrialPlayer(self.experiment, file, self.changes, self.directory, self.versions, self.run_id)
+        if self.jobs > 1:
+            play_together(player, self.trials, self.scheduler, self.jobs, self._note_and_show)
+            return
+        for trial in self.trials:
+            self.progress.begin(trial)
+            player.play(trial, self.environment, self.progress.show, self._note)
+
+    def _note(self, trial: int, result: TrialResult) -> None:
+        self.results[trial] = result
+
+    def _note_and_show(self, trial: int, result: TrialResult) -> None:
+        self._note(trial, result)
+        self.progress.played(trial, len(self.results))
 
     def _summary(self, wall_s: float) -> dict[str, Any]:
         logs = [log for trial in self.trials for log in self.directory.logs(trial)]
         logs = [log for log in logs if log.exists()]
-        sim_s = sum(result.sim_s for result in self.results)
+        sim_s = sum(result.sim_s for result in self.results.values())
         return {
             "run": str(self.directory.path),
             "run_id": self.run_id,
             "log": [str(log) for log in logs],
             "digest": digest(logs),
-            "moves": sum(result.moves for result in self.results),
+            "moves": sum(result.moves for result in self.results.values()),
             "sim_s": round(sim_s, 3),
             "wall_s": round(wall_s, 3),
             "real_time_factor": round(sim_s / wall_s, 2),
@@ -114,13 +114,13 @@ class Run:
             "ended": datetime.now(UTC).isoformat(),
             "host": socket.gethostname(),
             "command": sys.argv,
-            "trials": [asdict(result) for result in self.results],
+            "trials": [asdict(result) for _, result in sorted(self.results.items())],
         }
 
     def _write_manifest(self, state: str) -> None:
         """Conditions x trials x seeds, one record each."""
         run = self.experiment.run
-        complete = {number for number, result in enumerate(self.results) if result.complete}
+        complete = {trial for trial, result in self.results.items() if result.complete}
         records = [
             {
                 "condition": robot.group,
@@ -129,10 +129,10 @@ class Run:
                 "trial": trial,
                 "seed": run.seed,
                 "log": self.directory.logs(trial)[0].name,
-                "state": "complete" if number in complete else state,
+                "state": "complete" if trial in complete else state,
             }
-            for number, trial in enumerate(self.trials)
+            for trial in self.trials
             for robot in self.experiment.robot
         ]
-        about = {"name": run.name, "run_id": self.run_id, "moves": run.moves}
+        about = {"name": run.name, "run_id": self.run_id, "moves": run.moves, "set": list(self.changes)}
         self.directory.write_json(MANIFEST, {**about, "trials": records})

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from swarm.cli.output import print_json
-from swarm.cli.values import good_place
+from swarm.cli.values import Changes, good_place
 
 if TYPE_CHECKING:
     from swarm.checkup.finding import Finding
@@ -22,6 +22,7 @@ def doctor_command(
             help="Where the run would go.", show_default="runs/NAME-001 and so on", callback=good_place
         ),
     ] = None,
+    changes: Changes = None,
     json: Annotated[bool, typer.Option("--json", help="Print the findings as one JSON object.")] = False,
 ) -> None:
     """Look at an experiment, its files and this machine, as every command does before it starts.
@@ -33,7 +34,7 @@ def doctor_command(
     from swarm.checkup.finding import Level
     from swarm.config.experiment import Experiment
 
-    found = findings(Experiment.load(experiment), out)
+    found = findings(Experiment.load(experiment, changes), out)
     if json:
         print_json({"experiment": str(experiment), "findings": [finding.as_json() for finding in found]})
     else:
