@@ -32,7 +32,7 @@ from swarm.parallel import workers
 from swarm.runtime.identity import RunIdentity
 from swarm.signals import leave_on_signals
 
-Show = Callable[[Conductor, float], object]
+Show = Callable[[Conductor, float], None]
 Note = Callable[[int, TrialResult], object]
 
 

@@ -57,6 +57,7 @@ def analyze(request: Request, show: Callable[[int], object] = lambda _: None) ->
     out = request.out or default_out(request.runs)
     inputs = find_inputs(request.runs)
     directory = AnalysisDirectory.open(out, inputs)
+    directory.tables.mkdir(exist_ok=True)
     reading = read_logs(inputs.logs, directory.tables, request.sampled, show)
     best_paths = pl.read_parquet(reading.tables["best_paths"], glob=False)
     curves = run_curves(best_paths, inputs.shortest_moves)

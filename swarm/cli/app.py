@@ -10,6 +10,7 @@ import typer
 from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
+from swarm.cli.compare import compare_command
 from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
 from swarm.cli.export import export_command
@@ -17,6 +18,7 @@ from swarm.cli.info import info_command
 from swarm.cli.recover import recover_command
 from swarm.cli.replay import replay_command
 from swarm.cli.reproduce import reproduce_command
+from swarm.cli.runs import runs_command
 from swarm.cli.simulate import simulate_command
 from swarm.cli.trials import trials_command
 from swarm.errors import UserError
@@ -52,6 +54,8 @@ app.command("simulate")(simulate_command)
 app.command("reproduce")(reproduce_command)
 app.command("claims")(claims_command)
 app.command("analyze")(analyze_command)
+app.command("runs")(runs_command)
+app.command("compare")(compare_command)
 app.command("trials")(trials_command)
 app.command("durations")(durations_command)
 app.command("info")(info_command)

@@ -67,18 +67,12 @@ def many_trials(
 
 def _curves_of(runs: list[Path]) -> dict[str, Curves]:
     """The learning curves in the logs of a full simulation."""
-    import polars as pl
-
     from swarm.analysis.inputs import find_inputs
-    from swarm.analysis.learning_curves import run_curves
-    from swarm.logs.parquet import read_logs
+    from swarm.analysis.learning_curves import read_curves
 
     require_extra("lab", "mcap")
     with tempfile.TemporaryDirectory() as folder:
-        logs = find_inputs(runs).logs
-        tables = read_logs(logs, Path(folder), False, lambda _: None).tables
-        shortest_moves = min(log.shortest_moves for log in logs)
-        return run_curves(pl.read_parquet(tables["best_paths"], glob=False), shortest_moves).curves
+        return read_curves(find_inputs(runs).logs, Path(folder)).curves
 
 
 def trials_command(
