@@ -21,6 +21,7 @@ from swarm.cli.reproduce import reproduce_command
 from swarm.cli.runs import runs_command
 from swarm.cli.simulate import simulate_command
 from swarm.cli.trials import trials_command
+from swarm.cli.verify import verify_command
 from swarm.errors import UserError
 from swarm.version import version_text
 
@@ -54,6 +55,7 @@ app.command("simulate")(simulate_command)
 app.command("reproduce")(reproduce_command)
 app.command("claims")(claims_command)
 app.command("analyze")(analyze_command)
+app.command("verify")(verify_command)
 app.command("runs")(runs_command)
 app.command("compare")(compare_command)
 app.command("trials")(trials_command)
