@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from swarm.analysis.comparison import NoComparison
 from swarm.analysis.inputs import Inputs
 from swarm.analysis.page.curves import page_curves
 from swarm.analysis.page.learning import page_learning
@@ -46,6 +47,7 @@ def page_contents(summary: Summary, tables: Mapping[str, Path], origin: Origin) 
     curves, found_tables = page_curves(summary, sources), page_tables(summary, sources)
     learning, left_out = page_learning(tables, sources)
     notes = [origin.labelled(note) for note in summary.notes]
+    notes += [each.reason for each in summary.comparisons if isinstance(each, NoComparison)]
     if left_out:
         notes.append(f"the learning of {counted(left_out, 'more robot')} would make this file too large")
     return {

@@ -84,15 +84,8 @@ def _comparisons(found: Sequence[Comparison | NoComparison], sources: Sources) -
         "Of the mean best path length over all moves, in moves; less is better. Pairs are trials of the same "
         "seed and number, p is of Student's paired t-test."
     )
-    rows = [
-        _no_comparison(each) if isinstance(each, NoComparison) else _comparison(each, sources)
-        for each in found
-    ]
+    rows = [_comparison(each, sources) for each in found if isinstance(each, Comparison)]
     return _table("comparisons", "Comparisons", note, head, rows)
-
-
-def _no_comparison(found: NoComparison) -> list[Cell]:
-    return [f"{found.first}, {found.second}", "none", "", found.reason, "", "", ""]
 
 
 def _comparison(found: Comparison, sources: Sources) -> list[Cell]:
@@ -121,7 +114,7 @@ def _comparison(found: Comparison, sources: Sources) -> list[Cell]:
 
 def _paths(enacted: Sequence[LoggedPath], sources: Sources) -> dict[str, Any]:
     shown = enacted[:MOST_PATHS]
-    note = "Grey: what the demonstrator really did meanwhile; blue: the moves that were remembered."
+    note = "Grey: what the demonstrator really did. Blue: what was perceived; a stretch of it is remembered."
     if len(shown) < len(enacted):
         note += f" The {len(shown)} most enacted of {len(enacted)}."
     head = ["robot", "trial", "path", "drawn", "moves", "from", "since move", "replays", "R", "edit distance"]
@@ -142,7 +135,7 @@ def _path(path: LoggedPath, sources: Sources) -> list[Cell]:
         robot,
         f"{path.trial} of seed {path.seed}",
         sources.number(path.path, str(path.path), remembered),
-        {"moves": _names(path.moves), "real": _names(path.real or ())},
+        {"moves": _names(path.copied or path.moves), "real": _names(path.real or ())},
         moves_text(path.moves),
         path.source,
         sources.number(path.known_from, f"{path.known_from:,}", remembered),

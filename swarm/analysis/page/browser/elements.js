@@ -59,7 +59,7 @@ function counted(value) {
 function ticks(end, count) {
   const rough = end / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((factor) => factor * power).find((size) => size >= rough);
+  const step = [1, 2, 2.5, 5, 10].map((factor) => factor * power).find((size) => size >= 0.9 * rough);
   const found = [];
   for (let value = 0; value <= end * 1.0001; value += step) {
     found.push(value);

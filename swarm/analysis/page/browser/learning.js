@@ -113,9 +113,9 @@ function memoryTable(learning, count) {
   for (const each of found) {
     body.append(element("tr", each.path === replayed ? { class: "replayed" } : {},
       element("td", {}, String(each.path)), element("td", {}, pathDrawn(each.moves, [], 40)),
-      element("td", {}, element("meter", { min: 0, max: 1, value: Math.min(1, each.ratio), "aria-label": "R" }), ` ${each.ratio.toFixed(2)}`),
+      element("td", { class: "count" }, element("meter", { min: 0, max: 1, value: Math.min(1, each.ratio), "aria-label": "R" }), ` ${each.ratio.toFixed(2)}`),
       element("td", { class: "count" }, counted(each.replays)),
-      element("td", {}, each.visit ? `${each.from}, visit ${each.visit}` : each.from), element("td", { class: "count" }, counted(each.after))));
+      element("td", { class: "count" }, each.visit ? `visit ${each.visit}` : each.from), element("td", { class: "count" }, counted(each.after))));
   }
   const head = element("tr", {}, ...["path", "", "R", "replays", "from", "since move"].map((name) => element("th", { scope: "col" }, name)));
   return element("table", {}, element("thead", {}, head), body);

@@ -120,8 +120,9 @@ function notesSection(data) {
 
 function show(data) {
   const page = document.getElementById("page");
-  const how = "Every number that is underlined says where it comes from when it is pressed; `swarm verify` makes all of them once more from the logs.";
-  page.append(element("h1", {}, data.title), element("p", {}, `${data.note} `, how));
+  const how = "A number that is underlined says where it comes from when it is pressed. ";
+  const verify = [element("code", {}, "swarm verify"), " makes all of them once more from the logs."];
+  page.append(element("h1", {}, data.title), element("p", {}, `${data.note} ${how}`, ...verify));
   page.append(curvesChart(data));
   const [first, ...others] = data.tables;
   page.append(tableDrawn(first, data));

@@ -12,7 +12,7 @@ function cellsOf(moves) {
   return cells;
 }
 
-// The moves that were remembered, over those that were really made, in a square of `side` pixels.
+// Moves, over those that were really made where these are known, in a square of `side` pixels.
 function pathDrawn(moves, real, side) {
   const lines = [cellsOf(real), cellsOf(moves)];
   const all = lines.flat();
