@@ -14,6 +14,7 @@ from swarm.cli.compare import compare_command
 from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
 from swarm.cli.export import export_command
+from swarm.cli.film import film_command
 from swarm.cli.info import info_command
 from swarm.cli.recover import recover_command
 from swarm.cli.replay import replay_command
@@ -56,6 +57,7 @@ app.command("reproduce")(reproduce_command)
 app.command("claims")(claims_command)
 app.command("analyze")(analyze_command)
 app.command("verify")(verify_command)
+app.command("film")(film_command)
 app.command("runs")(runs_command)
 app.command("compare")(compare_command)
 app.command("trials")(trials_command)
