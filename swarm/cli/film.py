@@ -32,7 +32,9 @@ def moves_of(text: str) -> tuple[int, int]:
 def film_command(
     run: Annotated[Path, typer.Argument(help="A run directory, or the .mcap file of a trial.")],
     robot: Annotated[str, typer.Option(help="A learner.")],
-    moves: Annotated[str, typer.Option(metavar="FIRST:LAST", help="From which of its moves to which.")],
+    moves: Annotated[
+        str, typer.Option(metavar="FIRST:LAST", help="Of its moves; 0 is the trial's beginning.")
+    ],
     trial: Annotated[int, typer.Option(min=0, help="Of a run directory.")] = 0,
     out: Annotated[
         Path | None,
@@ -62,7 +64,9 @@ def film_command(
     if json:
         print_json(film.as_json())
         return
-    typer.echo(f"wrote {printable(film.file)}: {seconds:g} s, {film.speed:.0f} times as fast as life")
+    typer.echo(
+        f"wrote {printable(film.file)}: {seconds:g} s, {film.speed:,.0f} times as fast as life, visits slower"
+    )
     if film.camera_frames:
         typer.echo(f"camera: {film.same_hash} of {film.camera_frames} pictures have the hash in the log")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from swarm.config.experiment import Experiment, RobotSettings
 from swarm.film.canvas import BLUE, INK, ORANGE, QUIET, RULE, WHITE, Canvas, Colour, Point
@@ -13,6 +14,8 @@ from swarm.learning.q_table import QTable
 
 ROBOT_M = 0.035
 """An e-puck's radius."""
+CARRIED_M = 0.1
+"""Between two points of a trail: five times as far as a robot drives."""
 ARROW = 0.3
 """Of a cell, from its middle: arrows of neighbours do not touch."""
 PALE: Colour = (240, 245, 250)
@@ -92,8 +95,11 @@ class ArenaView:
         canvas.polygon(head, colour)
 
     def draw_trail(self, canvas: Canvas, poses: Sequence[Pose]) -> None:
-        """Where the robot drove on this journey."""
-        canvas.line([self.point(pose.x_m, pose.y_m) for pose in poses], ORANGE, 2)
+        """Where the robot drove on this journey, without where it was carried."""
+        for before, pose in pairwise(poses):
+            if before.distance_m(pose) < CARRIED_M:
+                ends = [self.point(each.x_m, each.y_m) for each in (before, pose)]
+                canvas.line(ends, ORANGE, 2)
 
     def draw_robots(self, canvas: Canvas, poses: Iterable[tuple[str, Pose]]) -> None:
         """Discs with the way that each one faces; the film's robot last, so that it is never hidden."""

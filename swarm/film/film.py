@@ -7,13 +7,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from swarm.clock import NS_PER_S
 from swarm.errors import UserError, nearest
 from swarm.film.arena_view import ArenaView
 from swarm.film.camera import SeenFrames, seen_frames
-from swarm.film.canvas import INK, ORANGE, QUIET, Canvas
+from swarm.film.canvas import INK, QUIET, Canvas
 from swarm.film.knowledge import Knowledge
-from swarm.film.panels import CameraPanel, Curve, CurvePanel
+from swarm.film.pace import Pace, Span, pace
+from swarm.film.panels import CameraPanel, Curve, CurvePanel, draw_memory
 from swarm.film.recorded_trial import RecordedTrial, read_trial
 from swarm.film.writers import write_film
 from swarm.messages import swarm_pb2 as pb
@@ -22,6 +26,9 @@ from swarm.messages import topics
 WIDTH, HEIGHT = 1280, 720
 """Pixels: what every player and every video service shows."""
 ARENA_SIDE = 640
+NOTE = (
+    "shades and arrows: the best Q and its moves    orange: this journey    blue: the path that is replayed"
+)
 TRAIL_NS = NS_PER_S // 5
 """Between two points of the trail: a robot drives 2 cm meanwhile."""
 
@@ -33,6 +40,7 @@ class FilmRequest:
     run: Path
     robot: str
     first_move: int
+    """0 is the trial's beginning, with a visit before the first move."""
     last_move: int
     out: Path
     trial: int = 0
@@ -48,7 +56,7 @@ class Film:
     file: Path
     frames: int
     speed: float
-    """Times as fast as life."""
+    """Times as fast as life, while the robot does not watch."""
     camera_frames: int
     """Of the robot's own camera, in the time that is filmed."""
     same_hash: int
@@ -68,15 +76,26 @@ def make_film(request: FilmRequest, show: Callable[[float], object] = lambda _: 
         trial.experiment, request.robot, identity.trial, trial.truths, looks, (began_ns, ended_ns)
     )
     count = max(2, round(request.seconds * request.frames_per_s))
-    pictures = _pictures(
-        trial, request, seen, [began_ns + (ended_ns - began_ns) * n // (count - 1) for n in range(count)]
-    )
+    visits = _visits(trial, request.robot, (began_ns, ended_ns))
+    times = pace((began_ns, ended_ns), visits, request.seconds, count)
+    pictures = _pictures(trial, request, seen, times)
     write_film(request.out, request.frames_per_s, (WIDTH, HEIGHT), _watched(pictures, count, show))
-    speed = (ended_ns - began_ns) / NS_PER_S / request.seconds
-    return Film(request.out, count, speed, len(seen.frames), seen.same)
+    return Film(request.out, count, max(times.speeds), len(seen.frames), seen.same)
 
 
-def _watched(pictures: Iterator[Any], count: int, show: Callable[[float], object]) -> Iterator[Any]:
+def _visits(trial: RecordedTrial, robot: str, span: Span) -> list[Span]:
+    """When the robot watched, as far as that is filmed."""
+    found: list[Span] = []
+    for visit in trial.of(topics.OBSERVATION, robot):
+        times = [look.captured_t_ns for look in visit[1].looks]
+        if times and span[0] < times[0] and times[-1] < span[1]:
+            found.append((times[0], times[-1]))
+    return found
+
+
+def _watched(
+    pictures: Iterator[NDArray[np.uint8]], count: int, show: Callable[[float], object]
+) -> Iterator[NDArray[np.uint8]]:
     for number, picture in enumerate(pictures, 1):
         yield picture
         show(number / count)
@@ -96,33 +115,32 @@ def _span(trial: RecordedTrial, request: FilmRequest) -> tuple[int, int]:
             f"--moves {request.first_move}:{request.last_move}: {request.robot} made {made} moves; "
             "say FIRST:LAST of these, the first below the last"
         )
-    first = max(1, request.first_move)
-    return moves[first - 1][0], moves[request.last_move - 1][0]
+    began_ns = moves[request.first_move - 1][0] if request.first_move else 0
+    return began_ns, moves[request.last_move - 1][0]
 
 
 def _pictures(
-    trial: RecordedTrial, request: FilmRequest, seen: SeenFrames, times_ns: list[int]
-) -> Iterator[Any]:
+    trial: RecordedTrial, request: FilmRequest, seen: SeenFrames, times: Pace
+) -> Iterator[NDArray[np.uint8]]:
     """(rows, columns, red green blue) of each time."""
     robot = request.robot
     arena = ArenaView(trial.experiment, robot, 28, 56, ARENA_SIDE)
-    camera = CameraPanel(seen, 740, 84, 400, 300)
-    curve = CurvePanel(_curves(trial, robot), request.last_move, _cap(trial), 770, 448, 470, 210)
+    camera = CameraPanel(seen, 740, 92, 400, 300)
+    curve = CurvePanel(_curves(trial, robot), request.last_move, _cap(trial), 770, 456, 470, 206)
     knowledge, still = Knowledge(trial, robot), Canvas(WIDTH, HEIGHT)
     arena.draw_floor(still)
     curve.draw_axes(still)
-    speed = (times_ns[-1] - times_ns[0]) / NS_PER_S / request.seconds
-    still.text(
-        f"{trial.identity.run}, {robot}, {speed:.0f} times as fast as life", (28, 14), INK, 20, bold=True
-    )
-    for t_ns in times_ns:
+    still.text(f"{trial.identity.run}, {robot}", (28, 14), INK, 20, bold=True)
+    still.text(NOTE, (28, 701), QUIET, 12)
+    for t_ns, speed in zip(times.times_ns, times.speeds, strict=True):
         canvas = still.copy()
         knowledge.learn_until(t_ns)
         _draw_arena(canvas, arena, knowledge, trial, t_ns)
-        camera.draw(canvas, t_ns, _visit_words(trial, robot, t_ns))
+        if not camera.draw(canvas, t_ns):
+            draw_memory(canvas, (740, 92), knowledge.memory(t_ns), _visit_words(trial, robot, t_ns))
         last = knowledge.last(t_ns)
         curve.draw(canvas, last.number if last else 0)
-        _draw_words(canvas, knowledge, trial, robot, t_ns)
+        _draw_words(canvas, knowledge, t_ns, speed)
         yield canvas.pixels
 
 
@@ -139,34 +157,22 @@ def _draw_arena(
     arena.draw_robots(canvas, [(name, pose) for name, pose in poses if pose])
 
 
-def _draw_words(canvas: Canvas, knowledge: Knowledge, trial: RecordedTrial, robot: str, t_ns: int) -> None:
+def _draw_words(canvas: Canvas, knowledge: Knowledge, t_ns: int, speed: float) -> None:
     last = knowledge.last(t_ns)
     number, track = (last.number, last.track) if last else (0, 1)
     minutes, seconds = divmod(t_ns // NS_PER_S, 60)
-    canvas.text(f"move {number:,}   journey {track:,}   {minutes:,} min {seconds:02} s", (740, 18), INK, 17)
-    path, _ = knowledge.replayed(t_ns)
-    if path:
-        replays = [
-            said
-            for _, said in trial.of(topics.REPLAY, robot)
-            if said.path == path and said.started_move <= number
-        ]
-        ratio = f", R {replays[-1].ratio:.2f}" if replays else ""
-        canvas.text(f"replays path {path}{ratio}", (1080, 19), ORANGE, 15)
-    note = (
-        "blue cells and arrows: the best Q and its moves   orange: this journey   blue line: a path replayed"
-    )
-    canvas.text(note, (28, 700), QUIET, 12)
+    canvas.text(f"move {number:,}   journey {track:,}   {minutes:,} min {seconds:02} s", (740, 17), INK, 17)
+    canvas.text(f"{speed:,.0f} times as fast as life", (460, 19), QUIET, 15)
 
 
 def _visit_words(trial: RecordedTrial, robot: str, t_ns: int) -> str:
     last = trial.newest(topics.VISIT, robot, t_ns)
     if last is None:
-        return "has not watched anybody yet"
+        return "it has not watched anybody yet"
     if last.phase != pb.Visit.DONE:
-        return f"visit {last.visit}: is carried to where it can watch"
-    taught = f"path {last.path} was remembered" if last.path else f"nothing was remembered:\n{last.reason}"
-    return f"does not watch now\nvisit {last.visit}: {taught}"
+        return f"visit {last.visit}: it is carried to where it can watch"
+    taught = f"path {last.path} was remembered" if last.path else f"nothing was remembered: {last.reason}"
+    return f"visit {last.visit}: {taught}"
 
 
 def _curves(trial: RecordedTrial, robot: str) -> list[Curve]:

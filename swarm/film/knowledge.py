@@ -4,13 +4,29 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import takewhile
 from typing import Any
 
+from swarm.analysis.copying.drawing import moves_text
+from swarm.analysis.copying.paths import FIRST_R
 from swarm.film.recorded_trial import RecordedTrial, Timed
 from swarm.geometry import Grid, Move
 from swarm.learning.q_table import QTable
 from swarm.messages import topics
+
+
+@dataclass(frozen=True)
+class MemoryLine:
+    """A remembered path at some time."""
+
+    path: int
+    moves: str
+    """In words, such as "5 SE"."""
+    ratio: float
+    """R."""
+    replays: int
+    is_replayed: bool
 
 
 class Knowledge:
@@ -22,6 +38,8 @@ class Knowledge:
         self._grid: Grid = trial.identity.grid
         self._times = [t_ns for t_ns, _ in self.moves]
         self._paths = {said.path: tuple(map(Move, said.moves)) for _, said in trial.of(topics.PATH, robot)}
+        self._remembered: Timed = trial.of(topics.PATH, robot)
+        self._replays: Timed = trial.of(topics.REPLAY, robot)
         self._learnt = 0
 
     def made(self, t_ns: int) -> int:
@@ -59,6 +77,18 @@ class Knowledge:
         while place and self.moves[place - 1][1].path == number:
             place -= 1
         return number, self._cells(self.moves[place][1].state, self._paths[number])
+
+    def memory(self, t_ns: int) -> list[MemoryLine]:
+        """In the order in which the paths came."""
+        ended = [replay for ended_ns, replay in self._replays if ended_ns <= t_ns]
+        replayed, _ = self.replayed(t_ns)
+        known = {said.path: said for said_ns, said in self._remembered if said_ns <= t_ns}
+        return [self._line(said, ended, replayed) for said in known.values()]
+
+    def _line(self, said: Any, ended: Sequence[Any], replayed: int) -> MemoryLine:
+        ratios = [replay.ratio for replay in ended if replay.path == said.path]
+        ratio = ratios[-1] if ratios else FIRST_R
+        return MemoryLine(said.path, moves_text(said.moves), ratio, len(ratios), said.path == replayed)
 
     def _cells(self, state: int, moves: Sequence[Move]) -> list[int]:
         cells = [state]

@@ -8,7 +8,14 @@ from dataclasses import dataclass
 from swarm.clock import NS_PER_S
 from swarm.film.camera import CameraFrame, SeenFrames
 from swarm.film.canvas import BLUE, GREEN, INK, ORANGE, QUIET, RULE, Canvas, Point
+from swarm.film.knowledge import MemoryLine
 
+MEMORY_LINES = 11
+"""The paper's ten paths, and one more; of a larger memory the newest."""
+LINE_PIXELS, R_PIXELS = 27, 120
+"""Eleven lines fill the place of the camera's picture."""
+SAID_SIGNS = 56
+"""So many letters fit beside the name."""
 LATEST_NS = NS_PER_S
 """A frame older than a second is of a visit that is over."""
 
@@ -23,16 +30,15 @@ class CameraPanel:
     width: int
     height: int
 
-    def draw(self, canvas: Canvas, t_ns: int, said: str) -> None:
-        canvas.text("camera", (self.left, self.top - 24), INK, 16, bold=True)
+    def draw(self, canvas: Canvas, t_ns: int) -> bool:
+        """Whether there is a frame to show."""
         frame = self.seen.at(t_ns)
-        corner, opposite = (self.left, self.top), (self.left + self.width, self.top + self.height)
         if frame is None or t_ns - frame.t_ns > LATEST_NS:
-            canvas.box(corner, opposite, (244, 244, 242))
-            canvas.text(said, (self.left + 14, self.top + 12), QUIET, 15)
-            return
-        canvas.picture(frame.pixels, corner, (self.width, self.height))
+            return False
+        canvas.text("camera", (self.left, self.top - 26), INK, 16, bold=True)
+        canvas.picture(frame.pixels, (self.left, self.top), (self.width, self.height))
         self._draw_sighting(canvas, frame)
+        return True
 
     def _draw_sighting(self, canvas: Canvas, frame: CameraFrame) -> None:
         look = self.seen.looks[frame.t_ns]
@@ -47,7 +53,32 @@ class CameraPanel:
         canvas.box(
             (self.left, self.top + self.height), (self.left + self.width, self.top + self.height + 4), colour
         )
-        canvas.text(words, (self.left + 110, self.top - 23), colour, 14)
+        canvas.text(words, (self.left + 80, self.top - 24), colour, 14)
+
+
+def draw_memory(canvas: Canvas, corner: tuple[int, int], memory: Sequence[MemoryLine], said: str) -> None:
+    """What the robot remembers, shown while it does not watch: each path with its R as a bar."""
+    left, top = corner
+    canvas.text("memory", (left, top - 26), INK, 16, bold=True)
+    canvas.text(
+        said if len(said) <= SAID_SIGNS else f"{said[:SAID_SIGNS]}...", (left + 90, top - 24), QUIET, 14
+    )
+    for place, line in enumerate(memory[-MEMORY_LINES:]):
+        y = top + 4 + place * LINE_PIXELS
+        colour = ORANGE if line.is_replayed else INK
+        canvas.text(f"{line.path}", (left, y), colour, 14)
+        canvas.box((left + 34, y + 3), (left + 34 + R_PIXELS, y + 15), (236, 236, 234))
+        canvas.box(
+            (left + 34, y + 3),
+            (left + 34 + R_PIXELS * min(1.0, line.ratio), y + 15),
+            ORANGE if line.is_replayed else BLUE,
+        )
+        canvas.text(
+            f"R {line.ratio:.2f}   {line.replays:,} replays   {line.moves}",
+            (left + 46 + R_PIXELS, y),
+            colour,
+            14,
+        )
 
 
 @dataclass(frozen=True)
