@@ -56,8 +56,7 @@ class Run:
         kept = self._begin()
         state = "interrupted"
         try:
-            self._play(kept)
-            state = "complete"
+            state = self._play(kept)
         finally:
             self._write_manifest(state)
             summary = self._summary(time.monotonic() - began)
@@ -76,15 +75,18 @@ class Run:
             raise UserError(f"{self.directory.path}: {in_words(error)}") from error
         return kept
 
-    def _play(self, file: Path) -> None:
-        """One after the other, or several at a time."""
+    def _play(self, file: Path) -> str:
+        """One after the other, or several at a time; what became of them."""
         player = TrialPlayer(self.experiment, file, self.changes, self.directory, self.versions, self.run_id)
         if self.jobs > 1:
             play_together(player, self.trials, self.scheduler, self.jobs, self._note_and_show)
-            return
+            return "complete"
         for trial in self.trials:
             self.progress.begin(trial)
             player.play(trial, self.environment, self.progress.show, self._note)
+            if self.results[trial].stopped:
+                return "stopped"
+        return "complete"
 
     def _note(self, trial: int, result: TrialResult) -> None:
         self.results[trial] = result

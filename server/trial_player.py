@@ -11,15 +11,18 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 from server.conductor.conductor import Conductor
 from server.conductor.earlier import earlier_progress
+from server.conductor.run_control import RunControl
+from server.control.desk import Desk
+from server.control.status_board import StatusBoard
 from server.processes.cpu_affinity import keeping_to_share
-from server.processes.environment import Environment, TrialPlan, simulated
+from server.processes.environment import Environment, TrialEnvironment, TrialPlan, simulated
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
 from server.recording.provenance import metadata
@@ -29,6 +32,7 @@ from server.trial import Trial, TrialResult
 from swarm.config.experiment import Experiment
 from swarm.errors import RunFailedError
 from swarm.parallel import workers
+from swarm.runtime.emergency_latch import EmergencyLatch
 from swarm.runtime.identity import RunIdentity
 from swarm.signals import leave_on_signals
 
@@ -53,23 +57,35 @@ class TrialPlayer:
         identity = RunIdentity.of(self.experiment, trial, self.run_id, self.versions["swarm-runtime"])
         plan = TrialPlan(identity, self.file, self.directory.output(trial))
         with environment(plan) as played_on:
-            reporter = played_on.reporter
-            *before, log = self.directory.logs(trial)
-            conductor = Conductor(
-                self.experiment, identity, reporter, played_on.carrier, earlier_progress(before)
-            )
-            recorder = Recorder(log, self._about(identity))
-            health, views = Health(reporter), Views(self.experiment)
-            played = Trial(played_on, conductor, recorder, health, views, show)
+            played = self._assembled(played_on, identity, show)
             try:
-                played.run()
+                with self._reached(played_on):
+                    played.run()
             finally:
                 note(trial, played.result())
 
-    def _about(self, identity: RunIdentity) -> dict[str, dict[str, str]]:
-        return metadata(
-            self.experiment, self.file, self.changes, identity, self.versions, self.directory.part
-        )
+    def _assembled(self, environment: TrialEnvironment, identity: RunIdentity, show: Show) -> Trial:
+        """A trial, put together from its parts."""
+        experiment, reporter, prompts = self.experiment, environment.reporter, environment.prompts
+        *before, log = self.directory.logs(identity.trial)
+        board = StatusBoard(experiment, identity, prompts, lambda: environment.hub.missing)
+        latch = EmergencyLatch(self.directory.emergency if environment.session else None)
+        robots = [robot.id for robot in experiment.robot]
+        control = RunControl(robots, reporter, latch, prompts, board.pose_of)
+        carrier, earlier = environment.carrier, earlier_progress(before)
+        conductor = Conductor(experiment, identity, reporter, carrier, control, earlier)
+        desk = None
+        if environment.session:
+            desk = Desk(environment.session, control, board, prompts, conductor, reporter)
+        part = self.directory.part
+        about = metadata(experiment, self.file, self.changes, identity, self.versions, part)
+        health, views = Health(reporter), Views(experiment)
+        return Trial(environment, conductor, Recorder(log, about), health, views, show, desk)
+
+    def _reached(self, environment: TrialEnvironment) -> AbstractContextManager[None]:
+        """Where people find a run that they can steer."""
+        session = environment.session
+        return self.directory.reached_at(session.endpoint) if session else nullcontext()
 
 
 def play_together(player: TrialPlayer, trials: Sequence[int], scheduler: str, jobs: int, note: Note) -> None:

@@ -52,7 +52,7 @@ def film_command(
 
     Of a simulated robot the camera's pictures are made once more, and compared with the log by their hashes.
     """
-    require_extra("lab", "mcap", "matplotlib", "numba", "PIL")
+    require_extra("lab", "mcap", "cv2", "matplotlib", "numba", "PIL")
     from swarm.film.film import FilmRequest, make_film
     from swarm.film.writers import check_form
 

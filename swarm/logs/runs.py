@@ -17,7 +17,7 @@ from swarm.logs.reader import LogReader
 from swarm.logs.trial_logs import LOG_NAME
 
 MANIFEST, RESULT = "manifest.json", "run.json"
-RUNNING, COMPLETE, INTERRUPTED, KILLED = "running", "complete", "interrupted", "killed"
+RUNNING, COMPLETE, KILLED = "running", "complete", "killed"
 UNKNOWN = "unknown"
 
 
@@ -89,10 +89,12 @@ def _read(file: Path) -> Any:
 
 
 def _state(place: Path, states: set[str]) -> str:
-    """A server that was killed could not say so: it has left the directory that it held."""
+    """Of a trial that did not come to its end. A server that was killed could not say so: it has left the
+    directory that it held.
+    """
     if RUNNING in states:
         return RUNNING if _is_held(place) else KILLED
-    return INTERRUPTED if INTERRUPTED in states else COMPLETE
+    return min(states - {COMPLETE}, default=COMPLETE)
 
 
 def _is_held(place: Path) -> bool:

@@ -49,6 +49,11 @@ def test_a_line_tells_what_became_of_a_run(tmp_path: Path) -> None:
     assert runs_in(done) == [found]
 
 
+def test_a_run_that_was_stopped_is_not_complete(tmp_path: Path) -> None:
+    run_directory(tmp_path, "run", ["complete", "stopped"])
+    assert runs_in(tmp_path)[0].state == "stopped"
+
+
 def test_a_killed_server_s_run_is_told_from_one_that_goes_on(tmp_path: Path) -> None:
     place = run_directory(tmp_path, "run", ["running"])
     with RunDirectory(place).held():
