@@ -47,8 +47,9 @@ def run_trials(
     trials: int,
     jobs: int,
     show: Callable[[], object] = lambda: None,
+    scheduler: str = "processes",
 ) -> ManyTrials:
-    """Trials 0 to `trials` - 1, each with its own seed; the same whatever the number of jobs."""
+    """Trials 0 to `trials` - 1, each with its own seed; the same wherever they run."""
     if experiment.run.moves < MOVES_BETWEEN_EVALUATIONS:
         raise UserError(
             f"{experiment.run.moves} moves give no curve: the best path is noted every "
@@ -56,7 +57,7 @@ def run_trials(
         )
     stored = load_copies(copies), load_durations(durations)
     outcomes: list[TrialOutcome] = []
-    with workers("processes", jobs) as pool:
+    with workers(scheduler, jobs) as pool:
         for outcome in pool.each(one_trial, ((experiment, *stored, trial) for trial in range(trials))):
             outcomes.append(outcome)
             show()
