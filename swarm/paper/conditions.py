@@ -24,6 +24,8 @@ BETAS = (0.1, 0.3, 0.5)
 SMALL_HORIZON_STEPS = 20_000
 LARGE_HORIZON_STEPS = 20_000_000
 """How far the paper's figures go: 3 and 5 to 9, and 12 to 21."""
+LATER_EVERY_STEPS = 1000
+"""On the 10 x 10 arena, between the figures' 20,000 steps and the 100,000th reaching of the goal."""
 
 BENEFICIAL = ObservedPath((Move.SE,) * 5)
 """Figure 2."""
@@ -44,6 +46,8 @@ def _small(name: str, teacher: Teacher, beta: float, approach: Approach) -> Cond
         goal_reachings=100_000,
         evaluate_every=10,
         points=SMALL_HORIZON_STEPS // 10,
+        later_every=LATER_EVERY_STEPS,
+        later_points=3000,  # twice as many as the longest runs have
     )
 
 
@@ -61,6 +65,8 @@ def one_path(approach: Approach, path: ObservedPath, beta: float) -> Condition:
 SMALL_NO_IMITATION = _small("small_no_imitation", NoTeacher(), 0.5, Approach.AVERAGE_Q)
 
 NO_IMITATION = _large("no_imitation", NoTeacher())
+NO_IMITATION_PAIR = _large("no_imitation_pair", NoTeacher(learners=2))
+"""What pairs that imitate are compared with: the mean of two varies less than one."""
 GIVEN_EIGHT_PATHS = _large("eight_paths", GivenPaths(EIGHT_PATHS))
 COPYING_EXPERT = _large("copying_expert", CopyExpert())
 COPYING_EXPERIENCED = _large("copying_experienced", CopyExperienced())

@@ -62,7 +62,9 @@ def check_sizes(store: RunStore, runs_of: Mapping[Condition, int], jobs: int) ->
                 f"--steps {cut.steps} is too short: the best path of {cut.name} is evaluated every "
                 f"{cut.evaluate_every} steps; give at least that many"
             )
-        needed += BYTES_A_VALUE * cut.point_limit * (runs + 2 * jobs) + BYTES_A_RUN * runs
+        needed += (
+            BYTES_A_VALUE * (cut.point_limit + cut.later_points) * (runs + 2 * jobs) + BYTES_A_RUN * runs
+        )
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed > memory:
         raise UserError(

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from swarm.errors import RunFailedError, UserError
 from swarm.files import write_json, write_whole
 from swarm.gridworld.condition import Condition
+from swarm.paper.readings import DEFAULT, Readings
 
 if TYPE_CHECKING:
     import polars as pl
@@ -38,14 +39,18 @@ class Timing:
 class RunStore:
     """The runs of one directory; make one with `open_store`."""
 
-    def __init__(self, root: Path, seed: int, steps: int | None) -> None:
+    def __init__(self, root: Path, seed: int, steps: int | None, readings: Readings = DEFAULT) -> None:
         self.root = root
         self.seed = seed
         self.steps = steps
+        self.readings = readings
 
     def condition(self, condition: Condition) -> Condition:
-        """The condition as it is run here: cut to this directory's number of steps, if it has one."""
-        return condition if self.steps is None else replace(condition, steps=self.steps, points=None)
+        """The condition as it is run here: as it is read, and cut to this directory's number of steps."""
+        read = self.readings.of(condition)
+        if self.steps is None:
+            return read
+        return replace(read, steps=self.steps, points=None, later_every=None, later_points=0)
 
     def admit(self, condition: Condition) -> None:
         """Make room for a condition; UserError if another one of the same name has been run here."""
@@ -72,6 +77,9 @@ class RunStore:
                 "evaluate_every": [condition.evaluate_every] * learners,
                 "best_path_length": pl.Series(list(trace.best_path_length), dtype=pl.List(pl.Int32)),
                 "ratios": pl.Series(list(trace.ratios), dtype=pl.List(pl.Float64)),
+                "replicated": pl.Series(list(trace.replicated), dtype=pl.List(pl.Int64)),
+                "tally": pl.Series(list(trace.tally), dtype=pl.List(pl.Int64)),
+                "q_error": list(trace.q_error),
             }
         )
         write_whole(self._path(condition, run), lambda path: frame.write_parquet(path, compression="zstd"))
@@ -94,17 +102,17 @@ class RunStore:
         return {(timing.condition, timing.run): timing for timing in found if timing is not None}
 
     def _folder(self, condition: Condition) -> Path:
-        return self.root / "runs" / condition.name
+        return self.root / "runs" / self.readings.of(condition).name
 
     def _path(self, condition: Condition, run: int) -> Path:
         return self._folder(condition) / f"{run:05}.parquet"
 
 
-def open_store(root: Path, seed: int, steps: int | None) -> RunStore:
+def open_store(root: Path, seed: int, steps: int | None, readings: Readings = DEFAULT) -> RunStore:
     """A new directory, or one that was made with the same settings; any other is refused."""
     settings = {"made_by": "swarm reproduce", "seed": seed, "steps": steps, "engine": _engine_digest()}
     _settle(root, settings, "choose another --out")
-    return RunStore(root, seed, steps)
+    return RunStore(root, seed, steps, readings)
 
 
 def _settle(folder: Path, settings: dict[str, Any], cure: str) -> None:

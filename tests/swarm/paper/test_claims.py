@@ -15,7 +15,6 @@ from swarm.errors import UserError
 from swarm.geometry import Grid, Move
 from swarm.gridworld.arena import OBSTACLE_100, Arena
 from swarm.gridworld.condition import Condition
-from swarm.gridworld.simulation import Trace
 from swarm.paper.claim import (
     Better,
     Check,
@@ -33,6 +32,7 @@ from swarm.paper.verdicts.checks import move_range, shortest_path_moves
 from swarm.paper.verdicts.evidence import Evidence
 from swarm.paper.verdicts.finding import Finding, Verdict, combined
 from swarm.paper.verdicts.judge import judge
+from tests.support.traces import made_up_trace
 
 END = 2000
 SLOW = replace(SMALL_NO_IMITATION, name="slow", goal_reachings=None, steps=END, points=None)
@@ -54,7 +54,7 @@ def evidence(folder: Path, curves: dict[Condition, np.ndarray], ratios: np.ndarr
         store.admit(condition)
         for run, row in enumerate(rows):
             r = np.ones((1, 1)) if ratios is None else ratios[run : run + 1]
-            store.save(condition, run, Trace(row[None].astype(np.int32), r, END))
+            store.save(condition, run, made_up_trace(row[None].astype(np.int32), r, END))
     return Evidence(Results(store, min(map(len, curves.values()))), END)
 
 
