@@ -109,5 +109,5 @@ def gains(approach: Approach, path: ObservedPath) -> tuple[Better, ...]:
 
 
 def losses(approach: Approach, path: ObservedPath, betas: tuple[float, ...] = BETAS) -> tuple[Better, ...]:
-    """Every one of these betas is worse than no imitation."""
-    return tuple(Better(SMALL_NO_IMITATION, one_path(approach, path, beta)) for beta in betas)
+    """Every one of these betas is worse than no imitation, over all reachings of the goal."""
+    return tuple(Better(SMALL_NO_IMITATION, one_path(approach, path, beta), whole_run=True) for beta in betas)

@@ -10,6 +10,7 @@ from pathlib import Path
 from swarm.config.limits import LARGEST_SEED, MOST_JOBS
 from swarm.errors import UserError
 from swarm.gridworld.condition import Condition
+from swarm.paper.readings import DEFAULT, Readings
 from swarm.paper.store import RunStore
 from swarm.paper.study import Study
 from swarm.parallel import check_scheduler
@@ -25,6 +26,7 @@ class Settings:
     out: Path | None = None
     jobs: int = 1
     scheduler: str = "processes"
+    readings: Readings = DEFAULT
 
     def __post_init__(self) -> None:
         for name, value in (("runs", self.runs), ("steps", self.steps), ("jobs", self.jobs)):

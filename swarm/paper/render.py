@@ -110,6 +110,6 @@ def _speed(study: Study, results: Results) -> dict[str, float | None]:
 
 
 def _timings(study: Study, results: Results) -> list[Timing]:
-    names = {condition.name for condition in study.series.values()}
+    names = {results.store.condition(condition).name for condition in study.series.values()}
     timings = results.store.timings().values()
     return [timing for timing in timings if timing.condition in names and timing.run < results.runs]

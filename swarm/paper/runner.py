@@ -90,8 +90,10 @@ STEPS_WORTH_A_PROCESS = 60_000_000
 def run_all(wanted: Iterable[tuple[Condition, int]], settings: Settings) -> RunStore:
     """Run what the directory does not hold yet: so many runs of each condition."""
     runs_of = runs_of_each(wanted)
-    check_sizes(RunStore(settings.root, settings.seed, settings.steps), runs_of, settings.jobs)
-    store = open_store(settings.root, settings.seed, settings.steps)
+    check_sizes(
+        RunStore(settings.root, settings.seed, settings.steps, settings.readings), runs_of, settings.jobs
+    )
+    store = open_store(settings.root, settings.seed, settings.steps, settings.readings)
     tasks = missing_tasks(store, runs_of)
     if tasks:
         _run_missing(store, tasks, settings)
@@ -99,11 +101,12 @@ def run_all(wanted: Iterable[tuple[Condition, int]], settings: Settings) -> RunS
 
 
 def _run_missing(store: RunStore, tasks: list[Task], settings: Settings) -> None:
-    costs = expected_costs(store.condition(condition) for condition, _ in tasks)
-    steps = sum(costs[condition.name] for condition, _ in tasks)
+    as_run = [(store.condition(condition), run) for condition, run in tasks]
+    costs = expected_costs(condition for condition, _ in as_run)
+    steps = sum(costs[condition.name] for condition, _ in as_run)
     useful_jobs = min(len(tasks), 1 + int(steps / STEPS_WORTH_A_PROCESS))
     with workers(settings.scheduler, min(settings.jobs, useful_jobs)) as started:
-        time_left = TimeLeft(costs, count_by_condition(tasks), started.count)
+        time_left = TimeLeft(costs, count_by_condition(as_run), started.count)
         with progress_bar(len(tasks), time_left) as finished:
             run_tasks(store, tasks, started, finished)
 
