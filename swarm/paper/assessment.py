@@ -20,6 +20,7 @@ from swarm.paper.claim import (
     FindsShortestBy,
     FindsShortestSooner,
     HigherRatio,
+    Joins,
     MuchSmallerLoss,
     NoDifference,
     PortionsTested,
@@ -102,7 +103,7 @@ def _conditions(check: Check) -> tuple[Condition, ...]:
     match check:
         case Better(one, other) | NoDifference(one, other) | FindsShortestSooner(one, other):
             return one, other
-        case CloserPairs(one, other):
+        case CloserPairs(one, other) | Joins(one, other):
             return one, other
         case MuchSmallerLoss(one, other, baseline):
             return one, other, baseline

@@ -11,8 +11,8 @@ from swarm.geometry import Move
 from swarm.gridworld.arena import Arena, shortest_path
 from swarm.gridworld.condition import Condition
 
-AROUND_STEPS = 500_000
-"""The text's times are multiples of it: how close "around" can be meant."""
+ROUNDED_STEPS = 500_000
+"""The text's times are multiples of it."""
 MUCH = 0.5
 """"Much smaller" and "much earlier" mean at most half."""
 
@@ -31,19 +31,17 @@ def negligible(arena: Arena) -> float:
 class Better:
     """`better` has shorter best paths than `worse`.
 
-    With `start_step` or `end_step`, the paper names when this begins or ends: the interval of the time found
-    has to reach within `around_steps` of it. Only differences of more than `seen_moves` count for the times.
-    Without times it is said of the mean over the curve, or over the `whole_run` up to the last reaching of
-    the goal. `at_most_moves` is how small the paper calls the difference.
+    With `start_step` or `end_step`, the paper names when this begins or ends: another experiment of as many
+    runs might have seen that time, rounded to `rounded_steps`. Without times it is said of the mean over the
+    curve, or over the `whole_run` up to the last reaching of the goal. `at_most_moves` is how small the paper calls the difference.
     """
 
     better: Condition
     worse: Condition
     start_step: int | None = None
     end_step: int | None = None
-    seen_moves: float = 0.0
     at_most_moves: float | None = None
-    around_steps: int = AROUND_STEPS
+    rounded_steps: int = ROUNDED_STEPS
     whole_run: bool = False
 
 
@@ -55,6 +53,16 @@ class NoDifference:
     second: Condition
     margin_moves: float
     whole_run: bool = False
+
+
+@dataclass(frozen=True)
+class Joins:
+    """The two differ at first; after `step` they are the same, but for the margin of "no difference"."""
+
+    one: Condition
+    other: Condition
+    step: int
+    rounded_steps: int = ROUNDED_STEPS
 
 
 @dataclass(frozen=True)
@@ -136,6 +144,7 @@ class ShortestPathMoves:
 Check = (
     Better
     | NoDifference
+    | Joins
     | MuchSmallerLoss
     | FindsShortestSooner
     | FindsShortestBy

@@ -55,7 +55,7 @@ def as_markdown(grid: ReadingsGrid) -> str:
     options = [(option.name, option.place, ", ".join(option.alternatives), option.why) for option in OPTIONS]
     text = (
         "## Under other readings\n\nWhat the paper leaves open, the default first; then every claim under "
-        f"the default and under each alternative alone, of {grid.runs} runs each. `?`: these cannot decide it."
+        f"the default and under each alternative alone, of {grid.runs} runs each. `?`: too few."
     )
     blocks = (text, table(("option", "place", "alternatives", "why"), options), _verdicts(grid))
     return "\n\n".join(blocks) + "\n"

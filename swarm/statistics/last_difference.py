@@ -26,6 +26,16 @@ class Seen:
     low: float
     high: float
 
+    def agrees_with(self, time: float, rounded_to: float) -> bool:
+        """Whether another experiment of as many runs might have seen it at `time`, printed so rounded.
+
+        That time has an error of its own, as large as this one's: the interval is wider by the root of two.
+        """
+        if self.time is None:
+            return False
+        low, high = (self.time + np.sqrt(2) * (end - self.time) for end in (self.low, self.high))
+        return bool(low - rounded_to / 2 <= time <= high + rounded_to / 2)
+
 
 def last_difference(larger: Curves, smaller: Curves, rng: np.random.Generator, size: float = 0.0) -> Seen:
     """The end of the last stretch in which `larger` is significantly larger, and by more than `size`.
@@ -34,6 +44,12 @@ def last_difference(larger: Curves, smaller: Curves, rng: np.random.Generator, s
     """
     differences = paired_differences(larger, smaller)
     return _seen(differences.values, differences.times, 0.0, rng, size)
+
+
+def joining(one: Curves, other: Curves, rng: np.random.Generator, size: float) -> Seen:
+    """The end of the last stretch in which the two differ, either way, and by more than `size`."""
+    differences = paired_differences(one, other)
+    return _seen(differences.values, differences.times, 0.0, rng, size, either=True)
 
 
 def first_difference(larger: Curves, smaller: Curves, rng: np.random.Generator, size: float = 0.0) -> Seen:
@@ -48,12 +64,20 @@ LEVEL, RESAMPLES = 0.95, 1000
 """Of the intervals: the tails hold 25 resamples each."""
 
 
-def _seen(values: FloatArray, times: FloatArray, never: float, rng: np.random.Generator, size: float) -> Seen:
+def _seen(
+    values: FloatArray,
+    times: FloatArray,
+    never: float,
+    rng: np.random.Generator,
+    size: float,
+    *,
+    either: bool = False,
+) -> Seen:
     """The interval is the bias-corrected percentile one (Efron 1987): resamples are noisier than samples."""
     pairs = len(values)
-    (seen,) = _last(np.ones((1, pairs)), values, times, size)
+    (seen,) = _last(np.ones((1, pairs)), values, times, size, either)
     counts = rng.multinomial(pairs, np.full(pairs, 1 / pairs), size=RESAMPLES).astype(np.float64)
-    last = np.nan_to_num(_last(counts, values, times, size), nan=never)
+    last = np.nan_to_num(_last(counts, values, times, size, either), nan=never)
     low, high = np.quantile(last, _corrected(last, float(np.nan_to_num(seen, nan=never))))
     return Seen(None if np.isnan(seen) else float(seen), float(low), float(high))
 
@@ -68,14 +92,16 @@ def _corrected(resampled: FloatArray, seen: float) -> FloatArray:
     return corrected
 
 
-def _last(weights: FloatArray, values: FloatArray, times: FloatArray, size: float) -> FloatArray:
+def _last(
+    weights: FloatArray, values: FloatArray, times: FloatArray, size: float, either: bool
+) -> FloatArray:
     """When each resample's difference is last seen; NaN if never (resamples,)."""
     pairs = len(values)
     centre = values.mean(axis=0)
     shift = weighted_mean(weights, values - centre)
     spread = weighted_mean(weights, (values - centre) ** 2) - shift**2
     error = np.sqrt(np.clip(spread, 0, None) / (pairs - 1))
-    mean = centre + shift
+    mean = np.abs(centre + shift) if either else centre + shift
     differs: BoolArray = (mean > special.stdtrit(pairs - 1, 0.975) * error) & (mean > size)
     return _last_of(differs, times)
 

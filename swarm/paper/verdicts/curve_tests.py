@@ -29,8 +29,10 @@ class CurveTests:
     paper: Tested
     family_wise: Tested
     times: FloatArray
+    p: FloatArray
+    """Of the family-wise test at each point (points,)."""
     p_in_favour: FloatArray
-    """Of the family-wise test at each point; 1 where the difference is against (points,)."""
+    """The same, 1 where the difference is against."""
 
     def p_between(self, start: float, end: float) -> float:
         """Of "it is never better in this time"."""
@@ -50,6 +52,7 @@ def compare(better: Curves, worse: Curves, seed: int, in_time: bool = True) -> C
         _tested(PAPER_TEST, pointwise.p, pointwise.t, better.times, in_time),
         _tested(FAMILY_WISE_TEST, family_wise.p, family_wise.direction, better.times, in_time),
         better.times,
+        family_wise.p,
         np.where(family_wise.direction > 0, family_wise.p, 1.0),
     )
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from swarm.gridworld.condition import Condition
-from swarm.paper.claim import Better, CloserPairs, MuchSmallerLoss, NoDifference
+from swarm.paper.claim import Better, CloserPairs, Joins, MuchSmallerLoss, NoDifference, negligible
 from swarm.paper.verdicts.arrivals import arrivals_of
 from swarm.paper.verdicts.curve_tests import CurveTests, compare, compare_samples, effect_between
 from swarm.paper.verdicts.evidence import Evidence
 from swarm.paper.verdicts.finding import Finding, Verdict
 from swarm.paper.verdicts.wording import compared, in_steps
 from swarm.statistics.effect_size import paired_effect_size
-from swarm.statistics.last_difference import Seen, first_difference, last_difference
+from swarm.statistics.last_difference import Seen, first_difference, joining, last_difference
 from swarm.statistics.paired_tests import LEVEL, Window
 from swarm.statistics.samples import Curves, Sample, mean_level
 from swarm.statistics.sizes import above, below, equivalent
@@ -92,14 +92,14 @@ def _ruling(check: Better, seen: Compared, p: float, evidence: Evidence) -> Ruli
         opposed = seen.found.family_wise.opposes
         return Verdict.DOES_NOT_HOLD, "the opposite is significant" if opposed else "not significant"
     times = _times(check, seen, evidence)
-    shown = ", ".join(
-        f"{word} {'never' if found.time is None else in_steps(found.time)} "
-        f"({in_steps(found.low)} to {in_steps(found.high)})"
-        for word, found, _ in times
-    )
-    around = check.around_steps
-    fits = all(found.low - around <= at <= found.high + around for _, found, at in times)
+    shown = ", ".join(f"{word} {_in_steps(found)}" for word, found, _ in times)
+    fits = all(found.agrees_with(at, check.rounded_steps) for _, found, at in times)
     return (Verdict.HOLDS if fits else Verdict.IN_PART), f"better {shown}"
+
+
+def _in_steps(found: Seen) -> str:
+    when = "never" if found.time is None else in_steps(found.time)
+    return f"{when} ({in_steps(found.low)} to {in_steps(found.high)})"
 
 
 def _times(check: Better, seen: Compared, evidence: Evidence) -> list[tuple[str, Seen, float]]:
@@ -111,7 +111,7 @@ def _times(check: Better, seen: Compared, evidence: Evidence) -> list[tuple[str,
     ):
         if step is not None:
             rng = evidence.generator(check.better.name, check.worse.name, word)
-            times.append((word, search(seen.bad, seen.good, rng, check.seen_moves), float(step)))
+            times.append((word, search(seen.bad, seen.good, rng), float(step)))
     return times
 
 
@@ -147,6 +147,25 @@ def _same_ruling(found: CurveTests, same: bool, enough_runs: bool) -> Ruling:
         return Verdict.DOES_NOT_HOLD, "the family-wise test finds a difference"
     verdict = Verdict.DOES_NOT_HOLD if enough_runs else Verdict.UNDECIDED
     return verdict, "none is found, but one greater than the margin cannot be excluded"
+
+
+def joins(check: Joins, evidence: Evidence) -> Finding:
+    """When the curves last differ, either way, by more than what counts as no difference."""
+    one, other = evidence.compared(check.one, check.other)
+    found = compare(one, other, evidence.seed)
+    margin = negligible(check.one.arena)
+    rng = evidence.generator(check.one.name, check.other.name, "joining")
+    seen = joining(one, other, rng, margin)
+    before = found.times <= check.step
+    p = float(found.p[before].min(initial=1.0))
+    fits = p <= LEVEL and seen.agrees_with(check.step, check.rounded_steps)
+    verdict = Verdict.HOLDS if fits else Verdict.IN_PART if seen.time else Verdict.DOES_NOT_HOLD
+    if check.step > one.times[-1] or (not fits and not evidence.enough_runs):
+        verdict = Verdict.UNDECIDED
+    why = f"they differ by more than {margin:.2g} moves until {_in_steps(seen)}"
+    effect = effect_between(one, other, 0, float(check.step))
+    arrivals = arrivals_of(check.one, check.other, evidence)
+    return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, UNIT, p, arrivals)
 
 
 def much_smaller_loss(check: MuchSmallerLoss, evidence: Evidence) -> Finding:

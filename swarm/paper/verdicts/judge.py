@@ -19,13 +19,14 @@ from swarm.paper.claim import (
     FindsShortestBy,
     FindsShortestSooner,
     HigherRatio,
+    Joins,
     MuchSmallerLoss,
     NoDifference,
     PortionsTested,
     ShortestPathMoves,
 )
 from swarm.paper.verdicts.arrivals import finds_shortest_by, finds_shortest_sooner
-from swarm.paper.verdicts.differences import better, closer_pairs, much_smaller_loss, no_difference
+from swarm.paper.verdicts.differences import better, closer_pairs, joins, much_smaller_loss, no_difference
 from swarm.paper.verdicts.evidence import Evidence
 from swarm.paper.verdicts.facts import converged, portions_tested, shortest_path_moves
 from swarm.paper.verdicts.finding import Finding, Verdict, combined
@@ -69,6 +70,8 @@ def _judged(check: Check, evidence: Evidence) -> Finding:
             return better(check, evidence)
         case NoDifference():
             return no_difference(check, evidence)
+        case Joins():
+            return joins(check, evidence)
         case MuchSmallerLoss():
             return much_smaller_loss(check, evidence)
         case CloserPairs():

@@ -12,6 +12,7 @@ from swarm.paper.claim import (
     FindsShortestBy,
     FindsShortestSooner,
     HigherRatio,
+    Joins,
     MuchSmallerLoss,
     NoDifference,
     PortionsTested,
@@ -27,6 +28,8 @@ def compared(check: Check) -> str:
             return f"{named(good)} better than {named(bad)}{_when(check)}{_how_much(check)}"
         case NoDifference(first, second):
             return f"{named(first)} no different from {named(second)}"
+        case Joins(one, other, step):
+            return f"{named(one)} and {named(other)} the same from {in_steps(step)} on"
         case MuchSmallerLoss(condition, than):
             return f"{named(condition)} loses at most half of what {named(than)} loses"
         case CloserPairs(condition, than):
@@ -70,5 +73,4 @@ def _when(check: Better) -> str:
 
 
 def _how_much(check: Better) -> str:
-    seen = "" if not check.seen_moves else f", seen by more than {check.seen_moves:g} moves"
-    return seen + ("" if check.at_most_moves is None else f", by at most {check.at_most_moves:g} moves")
+    return "" if check.at_most_moves is None else f", by at most {check.at_most_moves:g} moves"
