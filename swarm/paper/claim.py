@@ -33,7 +33,8 @@ class Better:
 
     With `start_step` or `end_step`, the paper names when this begins or ends: another experiment of as many
     runs might have seen that time, rounded to `rounded_steps`. Without times it is said of the mean over the
-    curve, or over the `whole_run` up to the last reaching of the goal. `at_most_moves` is how small the paper calls the difference.
+    curve, or over the `whole_run` up to the last reaching of the goal. `at_most_moves` is how small the paper
+    calls the difference.
     """
 
     better: Condition

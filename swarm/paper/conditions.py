@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from swarm.geometry import Move
 from swarm.gridworld.arena import OBSTACLE_100, OPEN_10
 from swarm.gridworld.condition import (
@@ -53,6 +55,11 @@ def _small(name: str, teacher: Teacher, beta: float, approach: Approach) -> Cond
 
 def _large(name: str, teacher: Teacher) -> Condition:
     return Condition(name, OBSTACLE_100, teacher, epsilon=0.5, beta=0.5, steps=LARGE_HORIZON_STEPS)
+
+
+def shortened(condition: Condition, steps: int) -> Condition:
+    """The condition for so many steps, evaluated all the time."""
+    return replace(condition, steps=steps, points=None, later_every=None, later_points=0)
 
 
 def one_path(approach: Approach, path: ObservedPath, beta: float) -> Condition:

@@ -89,7 +89,7 @@ def _claims_of_16() -> tuple[Claim, ...]:
 def figure_17() -> Study:
     """Two agents that copy each other."""
     series = {
-        "no imitation": NO_IMITATION,
+        "no imitation, two learners": NO_IMITATION_PAIR,
         "copying each other": COPYING_EACH_OTHER,
     }
     return large_study(

@@ -44,7 +44,7 @@ def _claims_of_19() -> tuple[Claim, ...]:
 def figure_20() -> Study:
     """Two agents with access to each other's Q values."""
     series = {
-        "no imitation, no access": NO_IMITATION,
+        "no imitation, no access, two learners": NO_IMITATION_PAIR,
         "accessing each other": ACCESSING_EACH_OTHER,
     }
     return large_study(

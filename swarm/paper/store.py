@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import json
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from swarm.errors import RunFailedError, UserError
 from swarm.files import write_json, write_whole
 from swarm.gridworld.condition import Condition
+from swarm.paper.conditions import shortened
 from swarm.paper.readings import DEFAULT, Readings
 
 if TYPE_CHECKING:
@@ -48,9 +49,7 @@ class RunStore:
     def condition(self, condition: Condition) -> Condition:
         """The condition as it is run here: as it is read, and cut to this directory's number of steps."""
         read = self.readings.of(condition)
-        if self.steps is None:
-            return read
-        return replace(read, steps=self.steps, points=None, later_every=None, later_points=0)
+        return read if self.steps is None else shortened(read, self.steps)
 
     def admit(self, condition: Condition) -> None:
         """Make room for a condition; UserError if another one of the same name has been run here."""

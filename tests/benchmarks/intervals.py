@@ -12,12 +12,11 @@ from __future__ import annotations
 
 import argparse
 import json
-from dataclasses import replace
 
 import numpy as np
 
 from swarm.gridworld.simulation import simulate
-from swarm.paper.conditions import SMALL_NO_IMITATION
+from swarm.paper.conditions import SMALL_NO_IMITATION, shortened
 from swarm.statistics.intervals import Band, ends_of, interval, pointwise_t_band, simultaneous_band
 from swarm.statistics.samples import BoolArray, Curves, Scale
 
@@ -35,8 +34,7 @@ ROUNDING = 1e-9
 
 def population(runs: int) -> Curves:
     """Best path lengths (runs, points)."""
-    changes = {"goal_reachings": None, "steps": STEPS, "points": None, "later_every": None, "later_points": 0}
-    condition = replace(SMALL_NO_IMITATION, **changes)
+    condition = shortened(SMALL_NO_IMITATION, STEPS)
     rows = [simulate(condition, 1, run).best_path_length[0] for run in range(runs)]
     times = 10 * np.arange(1.0, len(rows[0]) + 1)
     curves = Curves("population", times, np.array(rows, dtype=np.float64), tuple(range(runs)), SCALE)

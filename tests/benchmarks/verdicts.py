@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ import numpy as np
 from swarm.gridworld.condition import Condition
 from swarm.gridworld.simulation import simulate
 from swarm.learning.memory import Approach
-from swarm.paper.conditions import NOT_BENEFICIAL, SMALL_NO_IMITATION, one_path
+from swarm.paper.conditions import NOT_BENEFICIAL, SMALL_NO_IMITATION, one_path, shortened
 from swarm.statistics.last_difference import last_difference
 from swarm.statistics.paired_tests import LEVEL, max_t_test, pointwise_t_test
 from swarm.statistics.samples import Curves, FloatArray, Sample, mean_level
@@ -38,14 +37,13 @@ UNTIL_SAMPLES = 300
 
 def pool(condition: Condition, runs: int) -> FloatArray:
     """Best path lengths (runs, 200) of a condition cut to the figures' time."""
-    changes = {"goal_reachings": None, "steps": STEPS, "points": None, "later_every": None, "later_points": 0}
-    cut = replace(condition, **changes)
-    rows = [simulate(cut, 1, run).best_path_length[0] for run in range(runs)]
-    return np.array(rows, dtype=np.float64)[:, 9::10]
+    cut = shortened(condition, STEPS)
+    rows = [simulate(cut, 1, run).best_path_length[0][9::10] for run in range(runs)]
+    return np.array(rows, dtype=np.float64)
 
 
 def curves(values: FloatArray) -> Curves:
-    return Curves("drawn", 100.0 * np.arange(1, 201), values, tuple(range(len(values))))
+    return Curves("drawn", np.arange(100.0, STEPS + 1, 100.0), values, tuple(range(len(values))))
 
 
 def rejections(
@@ -83,7 +81,7 @@ def pairs_of_learners(everyone: FloatArray, rng: np.random.Generator, flips: int
 
 
 def until_held(slow: FloatArray, quick: FloatArray, size: int, rng: np.random.Generator) -> float:
-    """The share of intervals that hold the time at which the pools' own difference stops being significant."""
+    """The share of intervals that hold the time until which the pools' own difference is significant."""
     differences = slow - quick
     t = differences.mean(axis=0) / (differences.std(axis=0) / np.sqrt(size))
     truth = 100.0 * (np.flatnonzero(t > 1.96)[-1] + 1)
