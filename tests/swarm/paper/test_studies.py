@@ -73,7 +73,7 @@ def all_conditions() -> list[Condition]:
 
 def test_figures_share_conditions_and_no_name_means_two() -> None:
     shared = runs_of_each((condition, 100) for condition in all_conditions())
-    assert len(shared) == 26
+    assert len(shared) == 27
     assert len(all_conditions()) > 40
 
 
