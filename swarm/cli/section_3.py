@@ -1,0 +1,67 @@
+"""What `swarm trials` says of the paper's section 3: its claims, and its question as a study."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from swarm.config.experiment import Experiment
+
+
+def judged_claims(
+    expert: Experiment,
+    each_other: Experiment,
+    copies: Path,
+    durations: Path,
+    trials: int,
+    jobs: int,
+    out: Path,
+) -> dict[str, Any]:
+    """Run both experiments (an expert is copied, and each other), judge section 3's claims, and write claims.md into `out`."""
+    from swarm.files import write_text
+    from swarm.markdown import table
+    from swarm.surrogate.robot_claims import COLUMNS, as_json, judge_robots, rows
+    from swarm.surrogate.robot_tests import RobotEvidence
+    from swarm.surrogate.trials import run_trials
+
+    evidence = RobotEvidence(*(run_trials(each, copies, durations, trials, jobs) for each in both))
+    judged = judge_robots(evidence)
+    page = write_text(f"{table(COLUMNS, rows(judged))}\n", out / "claims.md")
+    return {"trials": trials, "claims": as_json(judged), "files": {"claims": str(page)}}
+
+
+def studied_errors(
+    expert: Experiment,
+    each_other: Experiment,
+    copies: Path,
+    durations: Path,
+    trials: int,
+    jobs: int,
+    out: Path,
+) -> dict[str, Any]:
+    """Run every arm of section 3.5's study, and write embodiment.md into `out`."""
+    from swarm.files import write_text
+    from swarm.markdown import table
+    from swarm.parallel import workers
+    from swarm.surrogate.copies import load_copies
+    from swarm.surrogate.durations import load_durations
+    from swarm.surrogate.embodiment import COLUMNS, as_json, rows, run_study, tasks
+
+    with workers("processes", jobs) as pool:
+        found = run_study(tasks(*both), load_copies(copies), load_durations(durations), trials, pool)
+    page = write_text(f"{table(COLUMNS, rows(found))}\n", out / "embodiment.md")
+    return {"trials": trials, "arms": as_json(found), "files": {"embodiment": str(page)}}
+
+
+def lines(result: dict[str, Any]) -> list[str]:
+    """The result to read."""
+    told = [
+        f"{one['section']}: {one['verdict']}: {one['text']} ({one['why']})"
+        for one in result.get("claims", [])
+    ]
+    told += [
+        f"{one['task']}, {one['arm']}: {one['gain_moves']:+.2f} moves shorter than with true copies"
+        f" (p {one['p']:.2g}); benefit: {'yes' if one['benefits'] else 'no'}"
+        for one in result.get("arms", [])
+    ]
+    return [*told, *(f"wrote {path}" for path in result["files"].values())]
