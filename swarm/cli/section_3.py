@@ -9,15 +9,14 @@ from swarm.config.experiment import Experiment
 
 
 def judged_claims(
-    expert: Experiment,
-    each_other: Experiment,
+    both: tuple[Experiment, Experiment],
     copies: Path,
     durations: Path,
     trials: int,
     jobs: int,
     out: Path,
 ) -> dict[str, Any]:
-    """Run both experiments (an expert is copied, and each other), judge section 3's claims, and write claims.md into `out`."""
+    """Run both experiments, judge section 3's claims, and write claims.md into `out`."""
     from swarm.files import write_text
     from swarm.markdown import table
     from swarm.surrogate.robot_claims import COLUMNS, as_json, judge_robots, rows
@@ -31,8 +30,7 @@ def judged_claims(
 
 
 def studied_errors(
-    expert: Experiment,
-    each_other: Experiment,
+    both: tuple[Experiment, Experiment],
     copies: Path,
     durations: Path,
     trials: int,

@@ -103,8 +103,10 @@ def _conditions(check: Check) -> tuple[Condition, ...]:
     match check:
         case Better(one, other) | NoDifference(one, other) | FindsShortestSooner(one, other):
             return one, other
-        case CloserPairs(one, other) | Joins(one, other):
+        case CloserPairs(one, other):
             return one, other
+        case Joins(one, others):
+            return one, *others
         case MuchSmallerLoss(one, other, baseline):
             return one, other, baseline
         case FindsShortestBy(condition) | HigherRatio(condition) | ChosenMore(condition):

@@ -58,10 +58,10 @@ class NoDifference:
 
 @dataclass(frozen=True)
 class Joins:
-    """The two differ at first; after `step` they are the same, but for the margin of "no difference"."""
+    """`one` differs at first; after `step` it is the same as all `others`, but for what is negligible."""
 
     one: Condition
-    other: Condition
+    others: tuple[Condition, ...]
     step: int
     rounded_steps: int = ROUNDED_STEPS
 

@@ -105,7 +105,7 @@ def _claims_of_17() -> tuple[Claim, ...]:
         Claim(
             "As can be seen, the imitating agents have a better performance than a no-imitation agent "
             "initially. But the difference between them vanishes after 5m time steps.",
-            (Joins(COPYING_EACH_OTHER, NO_IMITATION_PAIR, 5_000_000),),
+            (Joins(COPYING_EACH_OTHER, (NO_IMITATION_PAIR,), 5_000_000),),
         ),
         Claim(
             "At the start, the one that has slightly better performance is able to improve the other but as "
@@ -165,15 +165,12 @@ def _claims_of_18() -> tuple[Claim, ...]:
         Claim(
             "... although the agent that is given 8 paths achieves the same performance as around 5m "
             "time steps.",
-            (Joins(COPYING_EXPERT, GIVEN_EIGHT_PATHS, 5_000_000),),
+            (Joins(GIVEN_EIGHT_PATHS, (COPYING_EXPERT,), 5_000_000),),
         ),
         Claim(
             "The agent that is watching an experienced (but not expert) agent achieves the same "
             "performance with these two after around 8m time steps.",
-            (
-                Joins(COPYING_EXPERT, COPYING_EXPERIENCED, 8_000_000),
-                Joins(GIVEN_EIGHT_PATHS, COPYING_EXPERIENCED, 8_000_000),
-            ),
+            (Joins(COPYING_EXPERIENCED, (COPYING_EXPERT, GIVEN_EIGHT_PATHS), 8_000_000),),
         ),
         Claim(
             "All three have significantly better performance than the worst case of two agents copying "

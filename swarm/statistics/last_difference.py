@@ -34,7 +34,7 @@ class Seen:
         if self.time is None:
             return False
         low, high = (self.time + np.sqrt(2) * (end - self.time) for end in (self.low, self.high))
-        return bool(low - rounded_to / 2 <= time <= high + rounded_to / 2)
+        return bool(low - rounded_to <= time <= high + rounded_to)
 
 
 def last_difference(larger: Curves, smaller: Curves, rng: np.random.Generator, size: float = 0.0) -> Seen:

@@ -12,7 +12,7 @@ from swarm.paper.verdicts.arrivals import arrivals_of
 from swarm.paper.verdicts.curve_tests import CurveTests, compare, compare_samples, effect_between
 from swarm.paper.verdicts.evidence import Evidence
 from swarm.paper.verdicts.finding import Finding, Verdict
-from swarm.paper.verdicts.wording import compared, in_steps
+from swarm.paper.verdicts.wording import compared, in_steps, named
 from swarm.statistics.effect_size import paired_effect_size
 from swarm.statistics.last_difference import Seen, first_difference, joining, last_difference
 from swarm.statistics.paired_tests import LEVEL, Window
@@ -129,7 +129,8 @@ def no_difference(check: NoDifference, evidence: Evidence) -> Finding:
     first, second = evidence.compared(check.first, check.second, whole_run=check.whole_run)
     found = compare(first, second, evidence.seed)
     size = equivalent(mean_level(second), mean_level(first), check.margin_moves)
-    verdict, why = _same_ruling(found, size.p <= LEVEL, evidence.enough_runs)
+    p = _p_of_means(Compared(first, second, found, 0.0, float(first.times[-1])), evidence)
+    verdict, why = _same_ruling(p <= LEVEL, size.p <= LEVEL, evidence.enough_runs)
     why = f"{why}; the means differ by at most {size.bound:.2g} moves (margin {check.margin_moves:g})"
     effect = effect_between(first, second, 0, float(first.times[-1]))
     arrivals = arrivals_of(check.first, check.second, evidence)
@@ -138,34 +139,63 @@ def no_difference(check: NoDifference, evidence: Evidence) -> Finding:
     )
 
 
-def _same_ruling(found: CurveTests, same: bool, enough_runs: bool) -> Ruling:
-    differs = found.family_wise.smallest_p <= LEVEL
+def _same_ruling(differs: bool, same: bool, enough_runs: bool) -> Ruling:
+    if same and differs:
+        return Verdict.IN_PART, "the same but for a difference that is significant, and negligible"
     if same:
-        passing = "the same on average, but not at every time"
-        return (Verdict.IN_PART, passing) if differs else (Verdict.HOLDS, "no difference is found")
+        return Verdict.HOLDS, "no difference is found, and none greater than the margin is possible"
     if differs:
-        return Verdict.DOES_NOT_HOLD, "the family-wise test finds a difference"
+        return Verdict.DOES_NOT_HOLD, "the means differ significantly"
     verdict = Verdict.DOES_NOT_HOLD if enough_runs else Verdict.UNDECIDED
     return verdict, "none is found, but one greater than the margin cannot be excluded"
 
 
 def joins(check: Joins, evidence: Evidence) -> Finding:
-    """When the curves last differ, either way, by more than what counts as no difference."""
-    one, other = evidence.compared(check.one, check.other)
-    found = compare(one, other, evidence.seed)
-    margin = negligible(check.one.arena)
-    rng = evidence.generator(check.one.name, check.other.name, "joining")
-    seen = joining(one, other, rng, margin)
-    before = found.times <= check.step
-    p = float(found.p[before].min(initial=1.0))
-    fits = p <= LEVEL and seen.agrees_with(check.step, check.rounded_steps)
-    verdict = Verdict.HOLDS if fits else Verdict.IN_PART if seen.time else Verdict.DOES_NOT_HOLD
-    if check.step > one.times[-1] or (not fits and not evidence.enough_runs):
+    """When the curve last differs from any of the others, either way, by more than what is negligible."""
+    last = max((_joined(check, other, evidence) for other in check.others), key=lambda join: join.time)
+    fits = last.p <= LEVEL and last.seen.agrees_with(check.step, check.rounded_steps)
+    verdict = Verdict.HOLDS if fits else Verdict.IN_PART if last.seen.time else Verdict.DOES_NOT_HOLD
+    if check.step > last.found.times[-1] or (not fits and not evidence.enough_runs):
         verdict = Verdict.UNDECIDED
-    why = f"they differ by more than {margin:.2g} moves until {_in_steps(seen)}"
+    margin = negligible(check.one.arena)
+    why = f"it differs from {named(last.other)} by more than {margin:.2g} moves until {_in_steps(last.seen)}"
+    one, other = evidence.compared(check.one, last.other)
     effect = effect_between(one, other, 0, float(check.step))
-    arrivals = arrivals_of(check.one, check.other, evidence)
-    return Finding(compared(check), verdict, why, found.paper, found.family_wise, effect, UNIT, p, arrivals)
+    arrivals = arrivals_of(check.one, last.other, evidence)
+    return Finding(
+        compared(check),
+        verdict,
+        why,
+        last.found.paper,
+        last.found.family_wise,
+        effect,
+        UNIT,
+        last.p,
+        arrivals,
+    )
+
+
+@dataclass(frozen=True)
+class Join:
+    """When a curve has joined one of the others."""
+
+    other: Condition
+    seen: Seen
+    found: CurveTests
+    p: float
+    """Of "they do not differ before"."""
+
+    @property
+    def time(self) -> float:
+        return self.seen.time or 0.0
+
+
+def _joined(check: Joins, other: Condition, evidence: Evidence) -> Join:
+    curves = evidence.compared(check.one, other)
+    found = compare(*curves, evidence.seed)
+    rng = evidence.generator(check.one.name, other.name, "joining")
+    seen = joining(*curves, rng, negligible(check.one.arena))
+    return Join(other, seen, found, float(found.p[found.times <= check.step].min(initial=1.0)))
 
 
 def much_smaller_loss(check: MuchSmallerLoss, evidence: Evidence) -> Finding:

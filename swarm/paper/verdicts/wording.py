@@ -28,8 +28,8 @@ def compared(check: Check) -> str:
             return f"{named(good)} better than {named(bad)}{_when(check)}{_how_much(check)}"
         case NoDifference(first, second):
             return f"{named(first)} no different from {named(second)}"
-        case Joins(one, other, step):
-            return f"{named(one)} and {named(other)} the same from {in_steps(step)} on"
+        case Joins(one, others, step):
+            return f"{named(one)} the same as {' and '.join(map(named, others))} from {in_steps(step)} on"
         case MuchSmallerLoss(condition, than):
             return f"{named(condition)} loses at most half of what {named(than)} loses"
         case CloserPairs(condition, than):
