@@ -12,7 +12,7 @@ from swarm.paper.options import Settings
 from swarm.paper.readings import OPTIONS, Readings, single_changes
 from swarm.paper.verdicts.finding import Verdict
 
-GRID_RUNS = 30
+GRID_RUNS = 25
 """Of each condition under each reading: what fits into a quarter of an hour on two cores."""
 SIGNS = {
     Verdict.HOLDS: "yes",

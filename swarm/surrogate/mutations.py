@@ -30,14 +30,14 @@ class RandomEdits:
         copied = self.robots.drawn(true, rng)
         if not copied:
             return ()
-        edited = list(true)
-        for _ in range(edit_distance(copied, true)):
+        edited, edits = list(true), edit_distance(copied, true)
+        while edit_distance(edited, true) < edits:
             _edit(edited, rng)
         return tuple(edited)
 
 
 def _edit(moves: list[Move], rng: np.random.Generator) -> None:
-    """One edit; the last move that is left is never left out."""
+    """One edit, which may undo another; the last move that is left is never left out."""
     kind, place = int(rng.integers(3)), int(rng.integers(len(moves)))
     if kind == 0 and len(moves) > 1:
         del moves[place]

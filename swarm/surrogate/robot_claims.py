@@ -11,6 +11,7 @@ import numpy as np
 from swarm.paper.verdicts.evidence import ENOUGH_RUNS
 from swarm.paper.verdicts.finding import Verdict
 from swarm.statistics.corrections import benjamini_hochberg, holm
+from swarm.statistics.samples import PairingError
 from swarm.surrogate.robot_tests import (
     RobotEvidence,
     RobotFinding,
@@ -133,7 +134,7 @@ class JudgedRobotClaim:
 
 def judge_robots(evidence: RobotEvidence) -> list[JudgedRobotClaim]:
     """Every claim of section 3."""
-    findings = [_of_enough(claim.check(evidence), evidence) for claim in ROBOT_CLAIMS]
+    findings = [_of_enough(_checked(claim, evidence), evidence) for claim in ROBOT_CLAIMS]
     p = np.array([finding.p for finding in findings if finding.p is not None], dtype=np.float64)
     corrected = iter(zip(holm(p), benjamini_hochberg(p), strict=True))
     judged = []
@@ -141,6 +142,14 @@ def judge_robots(evidence: RobotEvidence) -> list[JudgedRobotClaim]:
         numbers = (None, None) if finding.p is None else tuple(map(float, next(corrected)))
         judged.append(JudgedRobotClaim(claim, finding, *numbers))
     return judged
+
+
+def _checked(claim: RobotClaim, evidence: RobotEvidence) -> RobotFinding:
+    """A test that these trials cannot make decides nothing."""
+    try:
+        return claim.check(evidence)
+    except PairingError as error:
+        return RobotFinding(Verdict.UNDECIDED, str(error), None)
 
 
 def _of_enough(finding: RobotFinding, evidence: RobotEvidence) -> RobotFinding:

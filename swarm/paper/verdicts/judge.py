@@ -26,11 +26,13 @@ from swarm.paper.claim import (
     ShortestPathMoves,
 )
 from swarm.paper.verdicts.arrivals import finds_shortest_by, finds_shortest_sooner
-from swarm.paper.verdicts.differences import better, closer_pairs, joins, much_smaller_loss, no_difference
+from swarm.paper.verdicts.differences import better
 from swarm.paper.verdicts.evidence import Evidence
 from swarm.paper.verdicts.facts import converged, portions_tested, shortest_path_moves
 from swarm.paper.verdicts.finding import Finding, Verdict, combined
+from swarm.paper.verdicts.losses import closer_pairs, much_smaller_loss
 from swarm.paper.verdicts.ratios import chosen_more, higher_ratio
+from swarm.paper.verdicts.sameness import joins, no_difference
 from swarm.paper.verdicts.wording import compared
 from swarm.statistics.samples import PairingError
 
