@@ -6,6 +6,7 @@ import socket
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -13,7 +14,10 @@ from typing import Any
 
 from server.conductor.conductor import Conductor
 from server.conductor.earlier import earlier_progress
-from server.processes.environment import Environment, TrialPlan
+from server.conductor.run_control import RunControl
+from server.control.desk import Desk
+from server.control.status_board import StatusBoard
+from server.processes.environment import Environment, TrialEnvironment, TrialPlan
 from server.progress import RunProgress
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
@@ -23,6 +27,7 @@ from server.run_directory import MANIFEST, RunDirectory
 from server.trial import Trial, TrialResult
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, in_words
+from swarm.runtime.emergency_latch import EmergencyLatch
 from swarm.runtime.identity import RunIdentity
 
 
@@ -55,7 +60,11 @@ class Run:
             for trial in self.trials:
                 self.progress.begin(trial)
                 self._trial(trial, copy)
-            state = "complete"
+                if self.results[-1].stopped:
+                    state = "stopped"
+                    break
+            else:
+                state = "complete"
         finally:
             self._write_manifest(state)
             summary = self._summary(time.monotonic() - began)
@@ -80,18 +89,41 @@ class Run:
         identity = RunIdentity.of(self.experiment, trial, self.run_id, program)
         plan = TrialPlan(identity, file, self.directory.output(trial))
         with self.environment(plan) as environment:
-            reporter = environment.reporter
-            *before, log = self.directory.logs(trial)
-            earlier = earlier_progress(before)
-            conductor = Conductor(self.experiment, identity, reporter, environment.carrier, earlier)
-            about = metadata(self.experiment, file, identity, self.versions, self.directory.part)
-            recorder = Recorder(log, about)
-            health, views = Health(reporter), Views(self.experiment)
-            played = Trial(environment, conductor, recorder, health, views, self.progress.show)
+            played = self._assembled(environment, identity, file)
             try:
-                played.run()
+                with self._reached(environment):
+                    played.run()
             finally:
                 self.results.append(played.result())
+
+    def _assembled(self, environment: TrialEnvironment, identity: RunIdentity, file: Path) -> Trial:
+        """A trial, put together from its parts."""
+        experiment, reporter, prompts = self.experiment, environment.reporter, environment.prompts
+        *before, log = self.directory.logs(identity.trial)
+        board = StatusBoard(experiment, identity, prompts, lambda: environment.hub.missing)
+        latch = EmergencyLatch(self.directory.emergency if environment.session else None)
+        robots = [robot.id for robot in experiment.robot]
+        control = RunControl(robots, reporter, latch, prompts, board.pose_of)
+        carrier, earlier = environment.carrier, earlier_progress(before)
+        conductor = Conductor(experiment, identity, reporter, carrier, control, earlier)
+        desk = None
+        if environment.session:
+            desk = Desk(environment.session, control, board, prompts, conductor, reporter)
+        about = metadata(experiment, file, identity, self.versions, self.directory.part)
+        return Trial(
+            environment,
+            conductor,
+            Recorder(log, about),
+            Health(reporter),
+            Views(experiment),
+            self.progress.show,
+            desk,
+        )
+
+    def _reached(self, environment: TrialEnvironment) -> AbstractContextManager[None]:
+        """Where people find a run that they can steer."""
+        session = environment.session
+        return self.directory.reached_at(session.endpoint) if session else nullcontext()
 
     def _summary(self, wall_s: float) -> dict[str, Any]:
         logs = [log for trial in self.trials for log in self.directory.logs(trial)]

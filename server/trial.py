@@ -7,11 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from server.conductor.conductor import Conductor
+from server.control.desk import Desk
 from server.processes.environment import TrialEnvironment
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
 from server.recording.recorder import Recorder
 from swarm.checkup.machine import require_room
+from swarm.errors import RunFailedError
 from swarm.logs.ending import COMPLETE
 from swarm.messages import swarm_pb2 as pb
 
@@ -36,6 +38,8 @@ class TrialResult:
     disk_error: str
     restarted_too_often: dict[str, int]
     slowest_keys: dict[str, float]
+    stopped: str
+    """Who ended the trial before its time, and why; empty if nobody did."""
 
 
 class Trial:
@@ -49,6 +53,7 @@ class Trial:
         health: Health,
         views: Views,
         show: Callable[[Conductor, float], None],
+        desk: Desk | None = None,
     ) -> None:
         self._hub = environment.hub
         self._environment = environment
@@ -57,23 +62,25 @@ class Trial:
         self._health = health
         self._views = views
         self._show = show
+        self._desk = desk
         self._complete = False
         self._batches = 0
         self._began_ns: int | None = None
         self._t_ns = 0
 
     def run(self) -> None:
-        """Until every learner has made its moves. The log is closed whatever happens."""
+        """Until every learner has made its moves, or an operator stops it. The log is closed in any case."""
         try:
-            self._hub.start()
+            self._hub.start(self._wait)
             self._hub.advance()
             while not self._conductor.ended:
                 self._step()
             for _ in range(BATCHES_AFTER_THE_END):
                 self._step()
             self._recorder.write(self._hub.finish())
-            self._recorder.end(COMPLETE, "", self._hub.accounts())
-            self._complete = True
+            stopped = self._conductor.stopped
+            self._recorder.end("stopped" if stopped else COMPLETE, stopped, self._hub.accounts())
+            self._complete = not stopped
         except BaseException as error:
             self._note_end(error)
             raise
@@ -93,12 +100,15 @@ class Trial:
             disk_error=self._recorder.disk_error,
             restarted_too_often=self._recorder.restarted_too_often,
             slowest_keys=self._health.lowest_share,
+            stopped=self._conductor.stopped,
         )
 
     def _step(self) -> None:
         """The processes already work on the next tick while this one is looked at and recorded."""
         batch = self._hub.gather()
         self._hub.advance()
+        if self._desk:
+            self._desk.step(batch)
         self._conductor.step(batch)
         self._recorder.write(batch)
         for topic, view in self._views.of(batch):
@@ -112,6 +122,13 @@ class Trial:
             self._recorder.flush()
             require_room(self._recorder.path.parent)
             self._show(self._conductor, (self._t_ns - self._began_ns) / 1e9)
+
+    def _wait(self) -> None:
+        """Serve people while the robots are not all there; who stops the run ends the waiting, too."""
+        if self._desk:
+            self._desk.serve()
+        if self._conductor.stopped:
+            raise RunFailedError(f"stopped by {self._conductor.stopped} before it began")
 
     def _look_for_standing(self, t_ns: int) -> None:
         """People can help a robot that stands."""

@@ -12,8 +12,8 @@ from swarm.cli import section_3
 from swarm.cli.output import print_json
 from swarm.cli.values import good_place
 from swarm.config.limits import LARGEST_SEED, MOST_JOBS, MOST_MOVES, MOST_TRIALS
-from swarm.errors import UserError
 from swarm.extras import require_extra
+from swarm.files import new_folder
 from swarm.parallel import available_cores
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def many_trials(
 
     experiment = _good_experiment(file, seed, moves)
     of_full = _curves_of(full) if full else None
-    directory = _new_directory(out)
+    directory = new_folder(out)
     many = run_trials(experiment, copies or STORED_COPIES, durations or MEASURED_DURATIONS, trials, jobs)
     files = write_tables(many, directory) | {"picture": str(directory / "curves.png")}
     note = NOTE.format(cap=experiment.learning.path_length_cap) + (FULL_NOTE if of_full else "")
@@ -168,16 +168,6 @@ def _good_experiment(file: Path, seed: int | None, moves: int | None) -> Experim
     experiment = Experiment.load(file).changed(seed=seed, moves=moves)
     require_good(file, experiment_findings(experiment))
     return experiment
-
-
-def _new_directory(out: Path) -> Path:
-    try:
-        out.mkdir(parents=True)
-    except FileExistsError as error:
-        raise UserError(f"{out} is there already: choose another --out") from error
-    except OSError as error:
-        raise UserError(f"{out}: cannot be made ({error.strerror}); choose another --out") from error
-    return out
 
 
 def _lines(result: dict[str, Any]) -> list[str]:

@@ -6,6 +6,7 @@ import dataclasses
 import hashlib
 import json
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -107,11 +108,22 @@ class RunStore:
         return self._folder(condition) / f"{run:05}.parquet"
 
 
-def open_store(root: Path, seed: int, steps: int | None, readings: Readings = DEFAULT) -> RunStore:
-    """A new directory, or one that was made with the same settings; any other is refused."""
+def open_store(
+    root: Path,
+    seed: int,
+    steps: int | None,
+    conditions: Iterable[Condition] = (),
+    readings: Readings = DEFAULT,
+) -> RunStore:
+    """A new directory with room for these conditions, or one that was made with the same settings; any
+    other is refused.
+    """
     settings = {"made_by": "swarm reproduce", "seed": seed, "steps": steps, "engine": _engine_digest()}
     _settle(root, settings, "choose another --out")
-    return RunStore(root, seed, steps, readings)
+    store = RunStore(root, seed, steps, readings)
+    for condition in conditions:
+        store.admit(condition)
+    return store
 
 
 def _settle(folder: Path, settings: dict[str, Any], cure: str) -> None:

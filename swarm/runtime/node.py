@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol, TypeVar
 
@@ -11,18 +12,24 @@ from swarm.clock import WallClock
 from swarm.errors import RunFailedError
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.messages.header import Header
-from swarm.messages.topics import ACCOUNT, Delivery, Topic
+from swarm.messages.header import Header, Item
+from swarm.messages.topics import ACCOUNT, Delivery, Topic, topic_of
 from swarm.runtime.account import pack_account
 from swarm.runtime.clock_offset import ClockOffset, described
+from swarm.runtime.link_lag import LinkLag
 from swarm.runtime.liveliness import ALIVE_SERVER, ServerWatch
+from swarm.runtime.senders import BelievedSenders
 from swarm.runtime.subscription import Subscription
-from swarm.runtime.zenoh_session import Inbox, Publisher, Session
+from swarm.runtime.zenoh_session import Inbox, Publisher, Session, WireSample
 
 M = TypeVar("M", bound=Message)
 
 Step = Callable[[int], None]
 """What a process does at a tick, given the run's time in nanoseconds."""
+
+
+HELD = 64
+"""Messages from senders that nobody knows yet: a presence may come a moment after them."""
 
 
 class Node(Protocol):
@@ -41,6 +48,9 @@ class Node(Protocol):
 
     def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:
         """What to add to the times that a topic's sender writes, to have them on this process's clock."""
+
+    def lag_s(self) -> float:
+        """Real seconds by which this process is behind what others send; 0 where time is a message."""
 
     def run(self, step: Step) -> None:
         """Step at every tick, until the run ends.
@@ -77,13 +87,15 @@ class LivePublisher:
         self._sequencer = Sequencer()
         self._publishers: dict[str, Publisher] = {}
 
-    def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
-        """Send a message under the topic's key, of a robot if it has one."""
+    def publish(self, topic: Topic[M], message: M, robot: str = "") -> Item:
+        """Send a message under the topic's key, of a robot if it has one; returns what was sent."""
         key = topic.key(robot)
         header = Header(self.epoch, self._sequencer.following(key), self._clock.now_ns())
         if key not in self._publishers:
             self._publishers[key] = self._session.publisher(key, topic.delivery)
-        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
+        payload = message.SerializeToString()
+        self._publishers[key].put(payload, attachment=header.pack())
+        return Item(key, header, payload)
 
     @property
     def sent(self) -> Mapping[str, int]:
@@ -108,24 +120,29 @@ class LiveNode:
         epoch: int,
         run_id: str = "",
         say: Callable[[str], None] = lambda text: None,  # noqa: ARG005
+        going_on: Callable[[], None] = lambda: None,
     ) -> None:
         self.run_id = run_id
+        self._going_on = going_on
         self._session = session
         self._say = say
         self._server = ServerWatch(session.presence_watch(ALIVE_SERVER), say)
+        self._senders = BelievedSenders(session)
         self._clocks: dict[str, tuple[int, ClockOffset]] = {}
         self._clock = clock
         self._period_s = period_s
         self._live = LivePublisher(session, clock, epoch)
-        self._inboxes: list[tuple[Inbox, Subscription[Any]]] = []
+        self._lag = LinkLag(clock.speed)
+        self._inboxes: list[tuple[Inbox, Subscription[Any], deque[WireSample]]] = []
         self.keys_received: set[str] = set()
         self._run_states = self.subscribe(topics.RUN_STATE)
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
         """A subscription filled at every tick; `*` in a key keeps every message, since it holds many keys."""
         subscription = Subscription(topic)
+        self._senders.follow(topic)
         inbox = self._session.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
-        self._inboxes.append((inbox, subscription))
+        self._inboxes.append((inbox, subscription, deque(maxlen=HELD)))
         return subscription
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
@@ -135,12 +152,16 @@ class LiveNode:
         known = self._clocks.get(topic.key(robot))
         return known[1].ns if known else 0
 
+    def lag_s(self) -> float:
+        return self._lag.seconds(self._clock.now_ns())
+
     def give_account(self, name: str) -> None:
         """Tell the server, as the last thing, how many messages of each key this process has sent."""
         self._live.give_account(name)
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):
+            self._going_on()
             self._server.look()
             self._take_in()
             states = [state.message for state in self._run_states.take()]
@@ -159,16 +180,28 @@ class LiveNode:
             )
 
     def _take_in(self) -> None:
-        for inbox, subscription in self._inboxes:
-            for sample in inbox.poll():
+        arrived = [inbox.poll() for inbox, _, _ in self._inboxes]
+        self._senders.look()
+        for samples, (_, subscription, held) in zip(arrived, self._inboxes, strict=True):
+            waiting = [*held, *samples]
+            held.clear()
+            for sample in waiting:
                 self.keys_received.add(sample.key)
                 header = Header.unpack(sample.attachment)
-                subscription.put(sample.key, self._on_own_clock(sample.key, header), sample.payload)
+                if header and not self._believes(sample.key, header):
+                    held.append(sample)
+                else:
+                    subscription.put(sample.key, self._on_own_clock(sample.key, header), sample.payload)
+
+    def _believes(self, key: str, header: Header) -> bool:
+        found = topic_of(key)
+        return found is None or self._senders.believes(*found, header.epoch)
 
     def _on_own_clock(self, key: str, header: Header | None) -> Header | None:
         """A header whose time is on this clock. (A sender's clock cannot step: only its epochs differ.)"""
         if header is None:
             return None
+        self._lag.heard(header.epoch, header.t_ns, self._clock.now_ns())
         epoch, clock = self._clocks.get(key, (0, None))
         if clock is None or epoch != header.epoch:
             clock = ClockOffset(self._clock.speed, can_step=False)

@@ -44,7 +44,7 @@ def test_every_alternative_is_tried_once() -> None:
 
 def test_runs_that_no_reading_touches_are_shared(tmp_path: Path) -> None:
     plain = open_store(tmp_path, 1, 1000)
-    other = open_store(tmp_path, 1, 1000, Readings({"first-copy": "before-the-first-run"}))
+    other = open_store(tmp_path, 1, 1000, readings=Readings({"first-copy": "before-the-first-run"}))
     for condition in (NO_IMITATION, COPYING_EXPERT):
         plain.admit(condition)
         other.admit(condition)
