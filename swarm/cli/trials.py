@@ -12,6 +12,7 @@ from swarm.cli import section_3
 from swarm.cli.output import print_json
 from swarm.cli.values import good_place
 from swarm.config.limits import LARGEST_SEED, MOST_JOBS, MOST_MOVES, MOST_TRIALS
+from swarm.errors import UserError
 from swarm.extras import require_extra
 from swarm.files import new_folder
 from swarm.parallel import available_cores
@@ -157,7 +158,7 @@ def _section_3(
     both = [_good_experiment(file, seed, moves) for file in (expert, claims or study) if file]
     run = section_3.judged_claims if claims else section_3.studied_errors
     copies, durations = stored[0] or STORED_COPIES, stored[1] or MEASURED_DURATIONS
-    return run((both[0], both[1]), copies, durations, trials, jobs, _new_directory(out))
+    return run((both[0], both[1]), copies, durations, trials, jobs, new_folder(out))
 
 
 def _good_experiment(file: Path, seed: int | None, moves: int | None) -> Experiment:
