@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from swarm.config.experiment import Experiment
 
 
-def judged_claims(
-    both: tuple[Experiment, Experiment],
-    copies: Path,
-    durations: Path,
-    trials: int,
-    jobs: int,
-    out: Path,
-) -> dict[str, Any]:
+@dataclass(frozen=True)
+class AskedTrials:
+    """How many trials of which experiments: one in which an expert is copied, and one of two learners."""
+
+    both: tuple[Experiment, Experiment]
+    copies: Path
+    durations: Path
+    trials: int
+    jobs: int
+
+
+def judged_claims(asked: AskedTrials, out: Path) -> dict[str, Any]:
     """Run both experiments, judge section 3's claims, and write claims.md into `out`."""
     from swarm.files import write_text
     from swarm.markdown import table
@@ -23,20 +28,14 @@ def judged_claims(
     from swarm.surrogate.robot_tests import RobotEvidence
     from swarm.surrogate.trials import run_trials
 
-    evidence = RobotEvidence(*(run_trials(each, copies, durations, trials, jobs) for each in both))
+    stored = asked.copies, asked.durations
+    evidence = RobotEvidence(*(run_trials(each, *stored, asked.trials, asked.jobs) for each in asked.both))
     judged = judge_robots(evidence)
     page = write_text(f"{table(COLUMNS, rows(judged))}\n", out / "claims.md")
-    return {"trials": trials, "claims": as_json(judged), "files": {"claims": str(page)}}
+    return {"trials": asked.trials, "claims": as_json(judged), "files": {"claims": str(page)}}
 
 
-def studied_errors(
-    both: tuple[Experiment, Experiment],
-    copies: Path,
-    durations: Path,
-    trials: int,
-    jobs: int,
-    out: Path,
-) -> dict[str, Any]:
+def studied_errors(asked: AskedTrials, out: Path) -> dict[str, Any]:
     """Run every arm of section 3.5's study, and write embodiment.md into `out`."""
     from swarm.files import write_text
     from swarm.markdown import table
@@ -45,10 +44,11 @@ def studied_errors(
     from swarm.surrogate.durations import load_durations
     from swarm.surrogate.embodiment import COLUMNS, as_json, rows, run_study, tasks
 
-    with workers("processes", jobs) as pool:
-        found = run_study(tasks(*both), load_copies(copies), load_durations(durations), trials, pool)
+    stored = load_copies(asked.copies), load_durations(asked.durations)
+    with workers("processes", asked.jobs) as pool:
+        found = run_study(tasks(*asked.both), *stored, asked.trials, pool)
     page = write_text(f"{table(COLUMNS, rows(found))}\n", out / "embodiment.md")
-    return {"trials": trials, "arms": as_json(found), "files": {"embodiment": str(page)}}
+    return {"trials": asked.trials, "arms": as_json(found), "files": {"embodiment": str(page)}}
 
 
 def lines(result: dict[str, Any]) -> list[str]:

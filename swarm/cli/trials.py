@@ -158,7 +158,8 @@ def _section_3(
     both = [_good_experiment(file, seed, moves) for file in (expert, claims or study) if file]
     run = section_3.judged_claims if claims else section_3.studied_errors
     copies, durations = stored[0] or STORED_COPIES, stored[1] or MEASURED_DURATIONS
-    return run((both[0], both[1]), copies, durations, trials, jobs, new_folder(out))
+    asked = section_3.AskedTrials((both[0], both[1]), copies, durations, trials, jobs)
+    return run(asked, new_folder(out))
 
 
 def _good_experiment(file: Path, seed: int | None, moves: int | None) -> Experiment:

@@ -69,16 +69,16 @@ def test_a_memory_of_one_kind_says_nothing() -> None:
     assert share_of_imperfect([[path(3, 0.5), path(4, 0.5)]], np.random.default_rng(1)) is None
 
 
-def experiments(moves: int) -> tuple[Experiment, Experiment]:
+def asked(moves: int, trials: int) -> section_3.AskedTrials:
     folder = ROOT / "deploy" / "sim"
-    return (
-        Experiment.load(folder / "expert.toml").changed(moves=moves),
-        Experiment.load(folder / "each-other.toml").changed(moves=moves),
+    expert, each_other = (
+        Experiment.load(folder / name).changed(moves=moves) for name in ("expert.toml", "each-other.toml")
     )
+    return section_3.AskedTrials((expert, each_other), PAPERS_COPIES, MEASURED_DURATIONS, trials, 1)
 
 
 def test_every_claim_of_section_3_is_judged(tmp_path: Path) -> None:
-    result = section_3.judged_claims(experiments(1000), PAPERS_COPIES, MEASURED_DURATIONS, 4, 1, tmp_path)
+    result = section_3.judged_claims(asked(1000, 4), tmp_path)
     assert {claim["section"] for claim in result["claims"]} == {"3.4.1", "3.4.2", "3.5"}
     page = (tmp_path / "claims.md").read_text()
     assert all(claim["text"] in page for claim in result["claims"])
@@ -88,7 +88,7 @@ def test_every_claim_of_section_3_is_judged(tmp_path: Path) -> None:
 
 
 def test_every_arm_of_every_task_is_studied(tmp_path: Path) -> None:
-    result = section_3.studied_errors(experiments(600), PAPERS_COPIES, MEASURED_DURATIONS, 3, 1, tmp_path)
+    result = section_3.studied_errors(asked(600, 3), tmp_path)
     assert len(result["arms"]) == 3 * 4
     for arm in result["arms"]:
         if arm["arm"] == "true copies":
