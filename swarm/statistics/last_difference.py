@@ -37,26 +37,23 @@ class Seen:
         return bool(low - rounded_to <= time <= high + rounded_to)
 
 
-def last_difference(larger: Curves, smaller: Curves, rng: np.random.Generator, size: float = 0.0) -> Seen:
-    """The end of the last stretch in which `larger` is significantly larger, and by more than `size`.
-
-    A resample without any such difference ends at 0.
-    """
+def last_difference(larger: Curves, smaller: Curves, rng: np.random.Generator) -> Seen:
+    """The end of the last stretch in which `larger` is significantly larger; 0 in a resample without any."""
     differences = paired_differences(larger, smaller)
-    return _seen(differences.values, differences.times, 0.0, rng, size)
+    return _seen(differences.values, differences.times, 0.0, rng)
 
 
 def joining(one: Curves, other: Curves, rng: np.random.Generator, size: float) -> Seen:
-    """The end of the last stretch in which the two differ, either way, and by more than `size`."""
+    """The end of the last stretch in which the two differ significantly, either way, by more than `size`."""
     differences = paired_differences(one, other)
     return _seen(differences.values, differences.times, 0.0, rng, size, either=True)
 
 
-def first_difference(larger: Curves, smaller: Curves, rng: np.random.Generator, size: float = 0.0) -> Seen:
+def first_difference(larger: Curves, smaller: Curves, rng: np.random.Generator) -> Seen:
     """The beginning of the first such stretch; a resample without any begins at the end."""
     differences = paired_differences(larger, smaller)
     values, times = differences.values[:, ::-1], -differences.times[::-1]
-    seen = _seen(values, times, -float(differences.times[-1]), rng, size)
+    seen = _seen(values, times, -float(differences.times[-1]), rng)
     return Seen(None if seen.time is None else -seen.time, -seen.high, -seen.low)
 
 
@@ -69,7 +66,7 @@ def _seen(
     times: FloatArray,
     never: float,
     rng: np.random.Generator,
-    size: float,
+    size: float = 0.0,
     *,
     either: bool = False,
 ) -> Seen:
