@@ -11,6 +11,7 @@ import typer
 
 from swarm.cli.output import print_json
 from swarm.cli.reproduce import Jobs, Json, Out, Runs, Scheduler, Seed, Steps, told_when_interrupted
+from swarm.config.limits import MOST_TRIALS
 from swarm.extras import require_extra
 from swarm.parallel import available_cores
 
@@ -25,6 +26,9 @@ Figures = Annotated[
 ReadingsOption = Annotated[
     bool, typer.Option("--readings", help="Judge also under every alternative of the paper's open points.")
 ]
+ReadingsRuns = Annotated[
+    int, typer.Option(min=1, max=MOST_TRIALS, help="Runs of each condition under each of these readings.")
+]
 ReadingOption = Annotated[
     list[str] | None,
     typer.Option(help="A reading other than the default, such as first-copy=before-the-first-run."),
@@ -32,11 +36,17 @@ ReadingOption = Annotated[
 
 
 def judge_claims(
-    words: Sequence[str], command: str, *, grid: bool = False, reading: Sequence[str] = (), **asked: Any
+    words: Sequence[str],
+    command: str,
+    *,
+    grid_runs: int | None = None,
+    reading: Sequence[str] = (),
+    **asked: Any,
 ) -> tuple[dict[str, Any], list[str]]:
     """The claims about the figures that `words` name, judged and reported.
 
     Returns the result as plain data, and the same as lines to read; `asked` are the fields of `Settings`.
+    With `grid_runs`, also under every other reading, with so many runs of each condition.
     """
     require_extra("lab", "numba", "scipy", "polars", "matplotlib")
     from swarm.paper.assessment import assess
@@ -48,7 +58,7 @@ def judge_claims(
 
     names = chosen_names(words or ["all"])
     settings = Settings(**asked, readings=parse_readings(list(reading)))
-    page, under, counts = _under_readings(names, settings) if grid else ("", {}, [])
+    page, under, counts = _under_readings(names, settings, grid_runs) if grid_runs else ("", {}, [])
     assessment = assess(names, settings)
     files = {form: str(path) for form, path in write_report(assessment, command, page).items()}
     lines = [f"{one.figure}: {one.verdict.value}: {one.claim.text}" for one in assessment.judged]
@@ -56,11 +66,11 @@ def judge_claims(
     return result, [*lines, summary(assessment), *counts, *files.values()]
 
 
-def _under_readings(names: list[str], settings: Settings) -> tuple[str, dict[str, Any], list[str]]:
+def _under_readings(names: list[str], settings: Settings, runs: int) -> tuple[str, dict[str, Any], list[str]]:
     """The page, the plain data and the lines of the grid of readings."""
     from swarm.paper import grid
 
-    found = grid.assess_readings(names, settings)
+    found = grid.assess_readings(names, settings, runs)
     data = grid.as_json(found)
     lines = [f"{label}: {verdicts['hold']} hold of {found.runs} runs" for label, verdicts in data.items()]
     return grid.as_markdown(found), {"readings": data}, lines
@@ -75,12 +85,13 @@ def claims_command(
     jobs: Jobs = None,
     scheduler: Scheduler = "processes",
     readings: ReadingsOption = False,
+    readings_runs: ReadingsRuns = 25,
     reading: ReadingOption = None,
     json: Json = False,
 ) -> None:
     """Judge every claim of the text about the simulated figures, by the paper's test and a family-wise."""
     asked: dict[str, Any] = {"runs": runs, "steps": steps, "seed": seed, "out": out, "scheduler": scheduler}
-    choice: dict[str, Any] = {"grid": readings, "reading": reading or []}
+    choice: dict[str, Any] = {"grid_runs": readings_runs if readings else None, "reading": reading or []}
     command = shlex.join(["swarm", *sys.argv[1:]])
     with told_when_interrupted():
         count = len(available_cores()) if jobs is None else jobs

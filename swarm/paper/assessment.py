@@ -27,7 +27,7 @@ from swarm.paper.claim import (
 )
 from swarm.paper.conditions import LARGE_HORIZON_STEPS
 from swarm.paper.options import Settings
-from swarm.paper.render import render_plot
+from swarm.paper.render import render_plot, results_folder
 from swarm.paper.results import Results
 from swarm.paper.runner import run_all
 from swarm.paper.study import Figure, Study
@@ -84,7 +84,7 @@ def assess(names: Iterable[str], settings: Settings, *, plots: bool = True) -> A
         for claim in figure.claims
     )
     drawn = {study.name: render_plot(study, results) for study in studies} if plots else {}
-    return Assessment(judged, drawn, store.root / f"{runs}-runs", runs, settings.seed, settings.steps)
+    return Assessment(judged, drawn, results_folder(results), runs, settings.seed, settings.steps)
 
 
 def _horizon(figure: Figure) -> int:

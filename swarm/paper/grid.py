@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,8 +12,6 @@ from swarm.paper.options import Settings
 from swarm.paper.readings import OPTIONS, Readings, single_changes
 from swarm.paper.verdicts.finding import Verdict
 
-GRID_RUNS = 25
-"""Of each condition under each reading: what fits into a quarter of an hour on two cores."""
 SIGNS = {
     Verdict.HOLDS: "yes",
     Verdict.IN_PART: "in part",
@@ -37,16 +35,12 @@ class ReadingsGrid:
         ]
 
 
-def assess_readings(
-    names: Iterable[str], settings: Settings, told: Callable[[Readings], object] = lambda _: None
-) -> ReadingsGrid:
+def assess_readings(names: Iterable[str], settings: Settings, runs: int) -> ReadingsGrid:
     """One option changed at a time, with the runs that the readings share made once."""
-    asked = list(names)
-    runs = min(GRID_RUNS, GRID_RUNS if settings.runs is None else settings.runs)
-    found = []
+    asked, found = list(names), []
     for readings in single_changes():
-        told(readings)
-        found.append((readings, assess(asked, replace(settings, runs=runs, readings=readings), plots=False)))
+        changed = replace(settings, runs=runs, readings=readings)
+        found.append((readings, assess(asked, changed, plots=False)))
     return ReadingsGrid(runs, tuple(found))
 
 

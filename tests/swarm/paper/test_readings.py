@@ -65,7 +65,7 @@ def test_a_reading_that_there_is_not_is_refused(words: str, why: str) -> None:
 
 
 def test_the_grid_judges_every_claim_under_every_reading(tmp_path: Path) -> None:
-    result, lines = judge_claims(["13"], "", grid=True, runs=2, out=tmp_path, jobs=1)
+    result, lines = judge_claims(["13"], "", grid_runs=2, runs=2, out=tmp_path, jobs=1)
     assert list(result["readings"]) == [readings.label for readings in single_changes()]
     assert result["readings"]["default"] == {"verdicts": ["holds in part"], "hold": 0}
     page = Path(result["files"]["markdown"]).read_text()
