@@ -51,7 +51,7 @@ def test_a_figure_has_curves_ratios_times_a_table_and_a_plot(reference: tuple[Pa
     assert figure["seconds"] > 0
     assert figure["steps_per_s"] == pytest.approx(20 * 2000 / figure["seconds"], rel=0.01)
     table = pl.read_parquet(out / "5-runs" / "fig3.parquet")
-    assert table.shape == (800, 13)
+    assert table.shape == (800, 9)
     assert table["mean"].to_list()[:200] == curve["mean"]
     assert matplotlib.image.imread(out / "5-runs" / "fig3.png").shape[2] == 4
 
