@@ -49,6 +49,7 @@ def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file
     except ValueError as error:
         raise file.error((*where, "paths"), str(error)) from error
     _check_watching(experiment, number, robot, file)
+    _check_access(experiment, number, robot, file)
     _check_place(experiment, number, robot, file)
 
 
@@ -63,6 +64,16 @@ def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, f
     if robot.watches:
         _check_observers_place(experiment, robot, file)
         _check_frames(experiment, file)
+
+
+def _check_access(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number, "accesses")
+    known = [other.id for other in experiment.learners if other.id != robot.id]
+    if robot.accesses and robot not in experiment.learners:
+        raise file.error(where, f"{robot.id!r} is no learner: it has no use for another's internal state")
+    if robot.accesses and robot.accesses not in known:
+        whom = nearest(robot.accesses, known) if known else "there is no other learner"
+        raise file.error(where, f"{robot.id!r} accesses {robot.accesses!r}, which is no learner; {whom}")
 
 
 def _check_observers_place(experiment: Experiment, robot: RobotSettings, file: ConfigFile) -> None:
