@@ -186,6 +186,15 @@ def test_its_wheels_stand_while_it_hears_nothing_new(rig: Rig) -> None:
     assert stands(deaf[:5])
     assert of(deaf, "move") == []
     rig.node.behind_s = 0.0
+    assert stands(rig.run(1, None)), "until it has heard that there is no emergency"
+    assert len(of(rig.run(30), "move")) > 5
+
+
+def test_its_wheels_stand_after_a_lost_connection_until_it_hears_the_run_s_state(rig: Rig) -> None:
+    """An emergency stop that was sent meanwhile never comes."""
+    rig.run(30)
+    rig.node.losses += 1
+    assert stands(rig.run(1, None))
     assert len(of(rig.run(30), "move")) > 5
 
 
