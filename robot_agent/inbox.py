@@ -12,9 +12,9 @@ from swarm.messages import topics
 from swarm.runtime.emergency_latch import EmergencyLatch, by
 from swarm.runtime.node import Node
 
-HEARS_WITHIN_S = 0.3
-"""With a control period of 0.1 s and the way to the wheels, these stand within half a second of an emergency
-stop that gets lost. Poses come ten times a second: two of them may be late."""
+HEARS_WITHIN_S = 0.25
+"""Poses come ten times a second, one a control period: two may be missing, and at the third the wheels stand,
+0.3 s after an emergency stop that gets lost. Half a second is allowed."""
 
 
 class AgentInbox:

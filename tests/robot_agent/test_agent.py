@@ -181,7 +181,7 @@ def test_a_move_that_an_emergency_ended_is_told_of_by_its_cell(rig: Rig) -> None
 
 def test_its_wheels_stand_while_it_hears_nothing_new(rig: Rig) -> None:
     rig.run(30)
-    rig.node.behind_s = 0.31
+    rig.node.behind_s = 0.26
     deaf = rig.run(3)
     assert stands(deaf[:5])
     assert of(deaf, "move") == []
