@@ -20,6 +20,8 @@ class InterruptedRun:
     experiment: Experiment
     run_id: str
     trial: int
+    changes: tuple[str, ...]
+    """What `--set` said; the experiment has it."""
 
     @property
     def file(self) -> Path:
@@ -34,6 +36,7 @@ class InterruptedRun:
             (seed,) = {int(record["seed"]) for record in manifest["trials"]}
             states = {str(record["state"]) for record in manifest["trials"]}
             run_id, moves = str(manifest["run_id"]), int(manifest["moves"])
+            changes = tuple(map(str, manifest.get("set", ())))
         except (KeyError, TypeError, ValueError) as error:
             raise UserError(f"{path / MANIFEST}: is not of a single trial that others can join") from error
         if not run_id:
@@ -41,7 +44,7 @@ class InterruptedRun:
         if states == {"complete"}:
             raise UserError(f"{path}: trial {trial} is complete; there is nothing to resume")
         experiment = Experiment.load(path / EXPERIMENT).changed(seed=seed, moves=moves)
-        return cls(RunDirectory.reopened(path, trial), experiment, run_id, trial)
+        return cls(RunDirectory.reopened(path, trial), experiment, run_id, trial, changes)
 
 
 def _manifest(path: Path) -> dict[str, Any]:

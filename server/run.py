@@ -1,4 +1,4 @@
-"""A run: its trials one after the other, each in an environment of its own."""
+"""A run: its trials, each in an environment of its own, and what they leave behind."""
 
 from __future__ import annotations
 
@@ -6,29 +6,21 @@ import socket
 import sys
 import time
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from server.conductor.conductor import Conductor
-from server.conductor.earlier import earlier_progress
-from server.conductor.run_control import RunControl
-from server.control.desk import Desk
-from server.control.status_board import StatusBoard
-from server.processes.environment import Environment, TrialEnvironment, TrialPlan
+from server.experiment_text import experiment_bytes
+from server.processes.environment import Environment
 from server.progress import RunProgress
-from server.recording.foxglove_views import Views
-from server.recording.health import Health
-from server.recording.provenance import metadata, versions
-from server.recording.recorder import Recorder, digest
+from server.recording.provenance import versions
+from server.recording.recorder import digest
 from server.run_directory import MANIFEST, RunDirectory
-from server.trial import Trial, TrialResult
+from server.trial import TrialResult
+from server.trial_player import TrialPlayer, play_together
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, in_words
-from swarm.runtime.emergency_latch import EmergencyLatch
-from swarm.runtime.identity import RunIdentity
 
 
 @dataclass
@@ -44,7 +36,14 @@ class Run:
     progress: RunProgress
     run_id: str = ""
     """Random, and new with every run; empty in a lockstep, which nobody can join and anybody can repeat."""
-    results: list[TrialResult] = field(default_factory=list)
+    changes: Sequence[str] = ()
+    """What `--set` said in place of the file's values; the experiment has it."""
+    jobs: int = 1
+    """Trials at a time; more than one on simulated robots in lockstep alone."""
+    scheduler: str = "processes"
+    """Where those are played, if there are several at a time."""
+    results: dict[int, TrialResult] = field(default_factory=dict)
+    """By trial."""
     versions: dict[str, str] = field(default_factory=versions)
 
     def run(self) -> dict[str, Any]:
@@ -54,17 +53,10 @@ class Run:
 
     def _held(self) -> dict[str, Any]:
         began = time.monotonic()
-        copy = self._begin()
+        kept = self._begin()
         state = "interrupted"
         try:
-            for trial in self.trials:
-                self.progress.begin(trial)
-                self._trial(trial, copy)
-                if self.results[-1].stopped:
-                    state = "stopped"
-                    break
-            else:
-                state = "complete"
+            state = self._play(kept)
         finally:
             self._write_manifest(state)
             summary = self._summary(time.monotonic() - began)
@@ -76,65 +68,43 @@ class Run:
         """What stands in the directory before the first trial; nothing is left if there is no room for it."""
         try:
             self.directory.reserve()
-            copy = self.directory.keep_experiment(self.file)
+            kept = self.directory.keep_experiment(experiment_bytes(self.file, self.changes))
             self._write_manifest("running")
         except OSError as error:
             self.directory.remove()
             raise UserError(f"{self.directory.path}: {in_words(error)}") from error
-        return copy
+        return kept
 
-    def _trial(self, trial: int, file: Path) -> None:
-        """Also of a trial that is interrupted it is known how far it came."""
-        program = self.versions["swarm-runtime"]
-        identity = RunIdentity.of(self.experiment, trial, self.run_id, program)
-        plan = TrialPlan(identity, file, self.directory.output(trial))
-        with self.environment(plan) as environment:
-            played = self._assembled(environment, identity, file)
-            try:
-                with self._reached(environment):
-                    played.run()
-            finally:
-                self.results.append(played.result())
+    def _play(self, file: Path) -> str:
+        """One after the other, or several at a time; what became of them."""
+        player = TrialPlayer(self.experiment, file, self.changes, self.directory, self.versions, self.run_id)
+        if self.jobs > 1:
+            play_together(player, self.trials, self.scheduler, self.jobs, self._note_and_show)
+            return "complete"
+        for trial in self.trials:
+            self.progress.begin(trial)
+            player.play(trial, self.environment, self.progress.show, self._note)
+            if self.results[trial].stopped:
+                return "stopped"
+        return "complete"
 
-    def _assembled(self, environment: TrialEnvironment, identity: RunIdentity, file: Path) -> Trial:
-        """A trial, put together from its parts."""
-        experiment, reporter, prompts = self.experiment, environment.reporter, environment.prompts
-        *before, log = self.directory.logs(identity.trial)
-        board = StatusBoard(experiment, identity, prompts, lambda: environment.hub.missing)
-        latch = EmergencyLatch(self.directory.emergency if environment.session else None)
-        robots = [robot.id for robot in experiment.robot]
-        control = RunControl(robots, reporter, latch, prompts, board.pose_of)
-        carrier, earlier = environment.carrier, earlier_progress(before)
-        conductor = Conductor(experiment, identity, reporter, carrier, control, earlier)
-        desk = None
-        if environment.session:
-            desk = Desk(environment.session, control, board, prompts, conductor, reporter)
-        about = metadata(experiment, file, identity, self.versions, self.directory.part)
-        return Trial(
-            environment,
-            conductor,
-            Recorder(log, about),
-            Health(reporter),
-            Views(experiment),
-            self.progress.show,
-            desk,
-        )
+    def _note(self, trial: int, result: TrialResult) -> None:
+        self.results[trial] = result
 
-    def _reached(self, environment: TrialEnvironment) -> AbstractContextManager[None]:
-        """Where people find a run that they can steer."""
-        session = environment.session
-        return self.directory.reached_at(session.endpoint) if session else nullcontext()
+    def _note_and_show(self, trial: int, result: TrialResult) -> None:
+        self._note(trial, result)
+        self.progress.played(trial, len(self.results))
 
     def _summary(self, wall_s: float) -> dict[str, Any]:
         logs = [log for trial in self.trials for log in self.directory.logs(trial)]
         logs = [log for log in logs if log.exists()]
-        sim_s = sum(result.sim_s for result in self.results)
+        sim_s = sum(result.sim_s for result in self.results.values())
         return {
             "run": str(self.directory.path),
             "run_id": self.run_id,
             "log": [str(log) for log in logs],
             "digest": digest(logs),
-            "moves": sum(result.moves for result in self.results),
+            "moves": sum(result.moves for result in self.results.values()),
             "sim_s": round(sim_s, 3),
             "wall_s": round(wall_s, 3),
             "real_time_factor": round(sim_s / wall_s, 2),
@@ -146,13 +116,13 @@ class Run:
             "ended": datetime.now(UTC).isoformat(),
             "host": socket.gethostname(),
             "command": sys.argv,
-            "trials": [asdict(result) for result in self.results],
+            "trials": [asdict(result) for _, result in sorted(self.results.items())],
         }
 
     def _write_manifest(self, state: str) -> None:
         """Conditions x trials x seeds, one record each."""
         run = self.experiment.run
-        complete = {number for number, result in enumerate(self.results) if result.complete}
+        complete = {trial for trial, result in self.results.items() if result.complete}
         records = [
             {
                 "condition": robot.group,
@@ -161,10 +131,10 @@ class Run:
                 "trial": trial,
                 "seed": run.seed,
                 "log": self.directory.logs(trial)[0].name,
-                "state": "complete" if number in complete else state,
+                "state": "complete" if trial in complete else state,
             }
-            for number, trial in enumerate(self.trials)
+            for trial in self.trials
             for robot in self.experiment.robot
         ]
-        about = {"name": run.name, "run_id": self.run_id, "moves": run.moves}
+        about = {"name": run.name, "run_id": self.run_id, "moves": run.moves, "set": list(self.changes)}
         self.directory.write_json(MANIFEST, {**about, "trials": records})

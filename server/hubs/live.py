@@ -166,12 +166,15 @@ class LiveHub:
 
     def _received(self) -> list[Item]:
         """A sender's presence arrives before its first message, and so is looked at after the messages."""
-        now_s = time.monotonic()
-        items = [item for inbox in self._inboxes for item in self._items(inbox.poll(now_s))]
+        arrived = [(inbox, list(self._items(inbox.poll()))) for inbox in self._inboxes]
         self._attendance.look()
-        accepted = [item for item in items if self._admission.accepts(item)]
+        now_s = time.monotonic()
+        taken: list[Item] = []
+        for inbox, items in arrived:
+            accepted = [item for item in items if self._admission.accepts(item)]
+            taken += inbox.limited(accepted, now_s)
         own, self._own = self._own, []
-        return accepted + own
+        return taken + own
 
     def _items(self, samples: Iterable[WireSample]) -> Iterator[Item]:
         for sample in samples:

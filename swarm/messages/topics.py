@@ -202,6 +202,8 @@ ALIVE = "alive/{kind}/{name}/{host}/{epoch}/{identity}"
 """Presence (liveliness tokens): kind is robot, tracker, server or process; identity is a fingerprint."""
 NO_ROBOT = {topic.pattern.split("/")[0] for topic in TABLE if "{robot}" not in topic.pattern} | {"view"}
 """What the tables of a log call those who are no robot: no robot may be called so. `view` is the server's."""
+VIEW_ARENA, VIEW_ROBOTS, VIEW_LOG = "view/arena", "view/robots", "view/log"
+"""Never on the wire: what the server writes into the log for viewers, in Foxglove's schemas."""
 RUN_IDENTITY = "run/identity"
 """Asked, not published: the server answers with the run's id and every setting."""
 RUN_STATUS = "run/status"

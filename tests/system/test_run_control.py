@@ -21,6 +21,7 @@ def stack() -> Iterator[ExitStack]:
         yield stack
 
 
+@pytest.mark.long
 def test_a_run_from_waiting_to_stopped(tmp_path: Path, stack: ExitStack) -> None:
     laboratory = Laboratory(tmp_path, stack, count=2)
     server = laboratory.serve()
