@@ -23,7 +23,7 @@ from server.processes.environment import (
 from server.progress import RunProgress, print_summary
 from server.run import Run
 from server.run_directory import RunDirectory
-from swarm.access.zenoh_rules import limits
+from swarm.access.zenoh_limits import hub_limits
 from swarm.checkup.checkup import experiment_findings, findings
 from swarm.checkup.finding import Level, require_good
 from swarm.checkup.machine import room, writable
@@ -58,7 +58,7 @@ def conduct(asked: argparse.Namespace) -> None:
         )
         if asked.listen:
             robots = [robot.id for robot in plan.experiment.robot]
-            settings = session_settings(asked, asked.listen, hub=True, limits=limits(robots))
+            settings = session_settings(asked, asked.listen, hub=True, limits=hub_limits(robots))
             session = open_session.enter_context(Session(settings))
             manager = ServiceManager.of_environment()
             manager.ready()

@@ -9,6 +9,8 @@ from importlib import import_module
 from swarm.checkup.finding import require_good
 from swarm.errors import guarded
 from swarm.extras import naming_extras
+from swarm.messages import topics
+from swarm.runtime.clock_report import report_clock
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
@@ -63,6 +65,8 @@ def run(arguments: argparse.Namespace) -> None:
         plausibility = Plausibility(PlausibilitySettings(arena.width_m, arena.height_m))
         robots = [robot.id for robot in experiment.robot]
         bridge = Bridge(backend, plausibility, node, robots, experiment.pose_lateness_s, arguments.speed)
+        if not arguments.supervised:
+            report_clock(node, topics.TRACKER_EVENT)
         node.run(bridge.step)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from google.protobuf.message import Message
 from server.hubs.hub import Batch
 from server.recording.disk_sync import DiskSync
 from swarm.files import new_file
-from swarm.logs.ending import Sender, ending_records
+from swarm.logs.ending import Receipt, Sender, ending_records
 from swarm.logs.mcap_writer import LogWriter
 from swarm.messages.topics import topic_of
 from swarm.messages.validation import MAX_PAYLOAD_BYTES
@@ -110,14 +110,22 @@ class Recorder:
         """Why the disk could not take the log; empty if it could."""
         return str(self._sync.failure or "")
 
-    def end(self, state: str, reason: str, accounts: Mapping[Sender, int] | None) -> None:
-        """Write how the trial ended, and what every sender has sent by its own account.
+    def end(
+        self,
+        state: str,
+        reason: str,
+        accounts: Mapping[Sender, int] | None,
+        receipts: Sequence[Receipt] = (),
+    ) -> None:
+        """Write how the trial ended, and what everybody has sent and received by their own accounts.
 
         `accounts` is None if the hub had everything that was sent, so that the last number written is the
         last one sent.
         """
         self.flush()
-        self._add_metadata(ending_records(state, reason, self._last if accounts is None else accounts))
+        self._add_metadata(
+            ending_records(state, reason, self._last if accounts is None else accounts, receipts)
+        )
 
     def close(self) -> None:
         """Write the index and close the file; a second call does nothing."""

@@ -107,4 +107,5 @@ def interval_note(found: RunCurves) -> str:
     if max(trials) < FEWEST:
         return f"Mean over trials, and every trial: of fewer than {FEWEST} no interval can be given."
     exception = f" Of fewer than {FEWEST} trials, every one." if min(trials) < FEWEST else ""
-    return f"Mean over trials with its 95 % interval (Student's t on the scale's logit).{exception}"
+    made = "Student's t on the scale's logit, with a quarter of a trial at each end"
+    return f"Mean over trials with its 95 % interval ({made}).{exception}"

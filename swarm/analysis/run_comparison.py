@@ -16,12 +16,13 @@ from swarm.analysis.plots import interval_note, plot_curves
 from swarm.analysis.report import sentence
 from swarm.analysis.results_directory import AnalysisDirectory
 from swarm.errors import UserError
-from swarm.files import printable, write_png, write_table, write_text
+from swarm.files import printable, write_png, write_text
 from swarm.markdown import counted, table, text_number
 from swarm.statistics.intervals import interval
 from swarm.statistics.multiple_tests import holm
 from swarm.statistics.paired_tests import LEVEL
 from swarm.statistics.samples import Curves
+from swarm.table_files import write_table
 
 NAMED = 3
 """Runs that a directory of results is called after; more are counted."""

@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from swarm.cli import section_3
 from swarm.cli.output import print_json
 from swarm.cli.values import Changes, Scheduler, good_place
 from swarm.config.limits import LARGEST_SEED, MOST_JOBS, MOST_MOVES, MOST_TRIALS
+from swarm.errors import UserError
 from swarm.extras import require_extra
 from swarm.files import new_folder
 from swarm.parallel import available_cores, check_scheduler
 
 if TYPE_CHECKING:
+    from swarm.config.experiment import Experiment
     from swarm.statistics.samples import Curves
 
 NOTE = (
@@ -42,17 +45,13 @@ def many_trials(
 ) -> dict[str, Any]:
     """Run the trials, and write picture and tables into a new directory."""
     require_extra("lab", "scipy", "polars", "matplotlib")
-    from swarm.checkup.checkup import experiment_findings
-    from swarm.checkup.finding import require_good
-    from swarm.config.experiment import Experiment
     from swarm.surrogate.copies import STORED_COPIES
     from swarm.surrogate.durations import MEASURED_DURATIONS
     from swarm.surrogate.plots import first_trials, write_picture
     from swarm.surrogate.trials import PAPER_TRIALS, run_trials, summary, write_tables
 
     check_scheduler(scheduler)
-    experiment = Experiment.load(file, changes).changed(seed=seed, moves=moves)
-    require_good(file, experiment_findings(experiment))
+    experiment = _good_experiment(file, seed, moves, changes)
     of_full = _curves_of(full) if full else None
     directory = new_folder(out)
     stored = copies or STORED_COPIES, durations or MEASURED_DURATIONS
@@ -103,6 +102,16 @@ def trials_command(
             show_default="the first 4 trials",
         ),
     ] = None,
+    claims: Annotated[
+        Path | None,
+        typer.Option(help="Judge the paper's section 3, with this experiment of two learners beside."),
+    ] = None,
+    study: Annotated[
+        Path | None,
+        typer.Option(
+            help="Ask whether copying errors help (section 3.5), with this experiment of two learners."
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -119,12 +128,51 @@ def trials_command(
     """Run many trials without wheels: the learning of the robots on measured durations and stored copies."""
     out = out or Path("runs") / "trials" / experiment.stem
     count = jobs or len(available_cores())
-    files = (copies, durations, full or [], out)
-    result = many_trials(experiment, trials, moves, seed, *files, count, scheduler, changes or [])
+    if claims or study:
+        asked = trials, moves, seed, changes or []
+        result = _section_3(experiment, claims, study, asked, (copies, durations), out, count)
+        told = section_3.lines(result)
+    else:
+        files = (copies, durations, full or [], out)
+        result = many_trials(experiment, trials, moves, seed, *files, count, scheduler, changes or [])
+        told = _lines(result)
     if json:
         print_json(result)
     else:
-        typer.echo("\n".join(_lines(result)))
+        typer.echo("\n".join(told))
+
+
+def _section_3(
+    expert: Path,
+    claims: Path | None,
+    study: Path | None,
+    settings: tuple[int, int | None, int | None, list[str]],
+    stored: tuple[Path | None, Path | None],
+    out: Path,
+    jobs: int,
+) -> dict[str, Any]:
+    require_extra("lab", "scipy", "polars")
+    from swarm.surrogate.copies import STORED_COPIES
+    from swarm.surrogate.durations import MEASURED_DURATIONS
+
+    if claims and study:
+        raise UserError("--claims and --study: give one of them at a time")
+    trials, moves, seed, changes = settings
+    both = [_good_experiment(file, seed, moves, changes) for file in (expert, claims or study) if file]
+    run = section_3.judged_claims if claims else section_3.studied_errors
+    copies, durations = stored[0] or STORED_COPIES, stored[1] or MEASURED_DURATIONS
+    asked = section_3.AskedTrials((both[0], both[1]), copies, durations, trials, jobs)
+    return run(asked, new_folder(out))
+
+
+def _good_experiment(file: Path, seed: int | None, moves: int | None, changes: list[str]) -> Experiment:
+    from swarm.checkup.checkup import experiment_findings
+    from swarm.checkup.finding import require_good
+    from swarm.config.experiment import Experiment
+
+    experiment = Experiment.load(file, changes).changed(seed=seed, moves=moves)
+    require_good(file, experiment_findings(experiment))
+    return experiment
 
 
 def _lines(result: dict[str, Any]) -> list[str]:

@@ -62,9 +62,19 @@ def joined(logs: Iterable[LogIdentity]) -> list[LogIdentity]:
     return found
 
 
+def trial_of(log: Path) -> int:
+    """The trial that a log's name tells of: 0 for trial-000-2.mcap."""
+    return int(log.stem.split("-")[1])
+
+
 def by_trial(logs: Iterable[LogIdentity]) -> list[list[LogIdentity]]:
     """The parts of each trial, of logs that were joined."""
     return [list(parts) for _, parts in groupby(logs, key=lambda log: log.trial_log)]
+
+
+def trials_of(path: Path) -> list[list[LogIdentity]]:
+    """The parts of each trial of a run directory, or of the one that a log holds."""
+    return by_trial(logs_in(path, [])) if path.is_dir() else [[identify(path)]]
 
 
 def as_one(part: Part, log: LogIdentity) -> Part:

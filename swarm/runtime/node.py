@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping
+from itertools import chain
 from typing import Any, Protocol, TypeVar
 
 from google.protobuf.message import Message
@@ -14,10 +15,11 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import ACCOUNT, Delivery, Topic, topic_of
-from swarm.runtime.account import pack_account
+from swarm.runtime.account import Account
 from swarm.runtime.clock_offset import ClockOffset, described
 from swarm.runtime.link_lag import LinkLag
 from swarm.runtime.liveliness import ALIVE_SERVER, ServerWatch
+from swarm.runtime.receipts import Receipts
 from swarm.runtime.senders import BelievedSenders
 from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Inbox, Publisher, Session, WireSample
@@ -35,8 +37,8 @@ HELD = 64
 class Node(Protocol):
     """The same for real time and for lockstep, so that no process knows which it is in."""
 
-    keys_received: set[str]
-    """Every key of which this process received a message."""
+    received: Receipts
+    """All that has reached this process."""
     run_id: str
     """The run that this process takes part in; empty in a lockstep."""
 
@@ -102,11 +104,11 @@ class LivePublisher:
         """Key -> the number of its last message."""
         return self._sequencer.last
 
-    def give_account(self, name: str) -> None:
-        """Tell the server, as the last thing, how many messages of each key have been sent."""
+    def give_account(self, name: str, received: Receipts) -> None:
+        """Tell the server, as the last thing, how much has been sent and received."""
         header = Header(self.epoch, 1, self._clock.now_ns())
         publisher = self._session.publisher(ACCOUNT.format(name=name), Delivery.EVERY)
-        publisher.put(pack_account(self.sent), attachment=header.pack())
+        publisher.put(Account(self.sent, received.counts()).pack(), attachment=header.pack())
 
 
 class LiveNode:
@@ -134,7 +136,9 @@ class LiveNode:
         self._live = LivePublisher(session, clock, epoch)
         self._lag = LinkLag(clock.speed)
         self._inboxes: list[tuple[Inbox, Subscription[Any], deque[WireSample]]] = []
-        self.keys_received: set[str] = set()
+        self._first_inbox: dict[str, int] = {}
+        """By key expression: what several inboxes hear has come once."""
+        self.received = Receipts()
         self._run_states = self.subscribe(topics.RUN_STATE)
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
@@ -142,6 +146,7 @@ class LiveNode:
         subscription = Subscription(topic)
         self._senders.follow(topic)
         inbox = self._session.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
+        self._first_inbox.setdefault(topic.key(robot), len(self._inboxes))
         self._inboxes.append((inbox, subscription, deque(maxlen=HELD)))
         return subscription
 
@@ -156,8 +161,8 @@ class LiveNode:
         return self._lag.seconds(self._clock.now_ns())
 
     def give_account(self, name: str) -> None:
-        """Tell the server, as the last thing, how many messages of each key this process has sent."""
-        self._live.give_account(name)
+        """Tell the server, as the last thing, how much this process has sent and received."""
+        self._live.give_account(name, self.received)
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):
@@ -182,11 +187,13 @@ class LiveNode:
     def _take_in(self) -> None:
         arrived = [inbox.poll() for inbox, _, _ in self._inboxes]
         self._senders.look()
+        for sample in chain.from_iterable(arrived[first] for first in self._first_inbox.values()):
+            header = Header.unpack(sample.attachment)
+            self.received.heard(sample.key, header.epoch if header else 0, sample.payload)
         for samples, (_, subscription, held) in zip(arrived, self._inboxes, strict=True):
             waiting = [*held, *samples]
             held.clear()
             for sample in waiting:
-                self.keys_received.add(sample.key)
                 header = Header.unpack(sample.attachment)
                 if header and not self._believes(sample.key, header):
                     held.append(sample)

@@ -11,12 +11,14 @@ import json
 import os
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from swarm.access.credentials import zenoh_values
+from swarm.access.tls_check import check_certificates
 from swarm.errors import UserError
 from swarm.messages.topics import Delivery
 from swarm.runtime.background import in_background
@@ -28,7 +30,8 @@ if TYPE_CHECKING:
 ONE_THREAD = (
     "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
 )
-"""Three threads in place of seven, and a lockstep of ten processes a fifth faster (measured)."""
+"""Three threads in place of seven, and a lockstep of ten processes a fifth faster (measured). A hub that
+strangers reach keeps the seven: with one, who makes it wait would make everybody wait."""
 QUEUE_DEPTH = 65_536
 """Messages; fifty robots send some thousand a second: room for more than half a minute."""
 NEWEST_KEPT = 64
@@ -158,7 +161,8 @@ class Session:
     """
 
     def __init__(self, settings: SessionSettings, waiting: Callable[[], None] = lambda: None) -> None:
-        os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
+        if not settings.limits:
+            os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
         import zenoh
 
         zenoh.init_log_from_env_or(ZENOH_SAYS)
@@ -180,10 +184,14 @@ class Session:
         self.close()
 
     def close(self) -> None:
-        """Undeclare everything and leave; presence tokens vanish for the others."""
+        """Undeclare everything and leave; presence tokens vanish for the others.
+
+        Zenoh gives up after a while if another side does not read: there is nothing that is left to do then.
+        """
         atexit.unregister(self.close)
         if not self._session.is_closed():
-            self._session.close()  # type: ignore[no-untyped-call]
+            with suppress(self._zenoh.ZError):
+                self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str, delivery: Delivery) -> Publisher:
         """A publisher with the delivery's guarantees."""
@@ -282,7 +290,10 @@ def _opened(settings: SessionSettings) -> zenoh.Session:
 
     check_endpoint(settings.endpoint)
     check_protection(settings.endpoint, bool(settings.credentials or settings.config), settings.insecure)
-    return zenoh.open(_config(settings))
+    config = _config(settings)
+    if settings.credentials and not settings.hub:
+        check_certificates(settings.endpoint, settings.credentials)
+    return zenoh.open(config)
 
 
 def _keep_python_state() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,6 @@ import polars as pl
 from swarm.analysis.learning_curves import curve_table
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
-from swarm.files import write_table
 from swarm.learning.learner import MOVES_BETWEEN_EVALUATIONS
 from swarm.parallel import workers
 from swarm.statistics.intervals import interval
@@ -21,6 +20,7 @@ from swarm.statistics.samples import Curves, Scale, average_of_learners
 from swarm.surrogate.copies import CopyStore, load_copies
 from swarm.surrogate.durations import Durations, load_durations
 from swarm.surrogate.trial import CopiedPath, RobotTrial, TrialOutcome
+from swarm.table_files import write_table
 
 PAPER_TRIALS = 4
 """Of figures 25 and 26."""
@@ -38,6 +38,8 @@ class ManyTrials:
     outcomes: tuple[TrialOutcome, ...]
     curves: dict[str, Curves]
     """Condition -> best path length against moves, a row a trial."""
+    learnt: dict[str, Curves]
+    """The same, where a path that passes a cell in which nothing has been learnt has not arrived."""
 
 
 def run_trials(
@@ -62,7 +64,9 @@ def run_trials(
             outcomes.append(outcome)
             show()
     ordered = tuple(sorted(outcomes, key=lambda outcome: outcome.trial))
-    return ManyTrials(experiment, ordered, condition_curves(experiment, ordered))
+    learnt = [replace(outcome, best_paths=outcome.learnt_paths) for outcome in ordered]
+    curves = (condition_curves(experiment, outcomes) for outcomes in (ordered, learnt))
+    return ManyTrials(experiment, ordered, *curves)
 
 
 def one_trial(experiment: Experiment, copies: CopyStore, durations: Durations, trial: int) -> TrialOutcome:
@@ -88,8 +92,14 @@ def condition_curves(experiment: Experiment, outcomes: Sequence[TrialOutcome]) -
 
 
 def summary(many: ManyTrials) -> dict[str, Any]:
-    """Mean and 95 % interval of each condition at some moves, and from where on its mean stays low."""
-    return {name: _condition_summary(curves) for name, curves in many.curves.items()} | {
+    """Mean and 95 % interval of each condition at some moves, and from where on its mean stays low.
+
+    `mean_learnt` is without the paths that arrive by luck, through cells in which nothing has been learnt.
+    """
+    found = {name: _condition_summary(curves) for name, curves in many.curves.items()}
+    for name, curves in many.learnt.items():
+        found[name]["mean_learnt"] = _condition_summary(curves)["mean_and_interval"]
+    return found | {
         "copies": _copies_summary([copied for outcome in many.outcomes for copied in outcome.copies])
     }
 
