@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 import secrets
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -15,8 +15,9 @@ from rich.console import Console
 from server.interrupted_run import InterruptedRun
 from server.processes.environment import Environment, laboratory, require_emulation, simulated
 from server.progress import RunProgress, print_summary
-from server.run import Run
+from server.run import Run, Simulation
 from server.run_directory import RunDirectory
+from server.trial import TrialResult
 from swarm.checkup.checkup import experiment_findings, findings
 from swarm.checkup.finding import Level, require_good
 from swarm.checkup.machine import room, writable
@@ -42,18 +43,19 @@ def conduct(asked: argparse.Namespace) -> None:
     leave_on_signals()
     plan = _resumed(asked) if asked.resume else _begun(asked)
     with RunProgress(plan.experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
-        trials: Sequence[int] = range(plan.experiment.run.trials)
-        environment: Environment = partial(
-            simulated, plan.experiment, asked.speed, progress.warn, emulate=asked.emulate
-        )
-        if asked.listen:
-            settings = SessionSettings(asked.listen, hub=True, config=asked.zenoh_config)
-            session = open_session.enter_context(Session(settings))
-            trials = [plan.trial]
-            _warn_of_bad(plan.experiment, progress)
-            environment = partial(laboratory, plan.experiment, session, progress.warn)
+        environment = _environment(plan, asked, progress, open_session)
         directory = plan.directory or RunDirectory.create(asked.out, plan.experiment.run.name)
-        run = Run(plan.experiment, plan.file, directory, environment, trials, progress, plan.run_id)
+        run = Run(
+            plan.experiment,
+            plan.file,
+            directory,
+            environment,
+            plan.trials,
+            progress,
+            plan.run_id,
+            plan.simulation,
+            dict(plan.results),
+        )
         summary = run.run()
     if asked.json:
         print_json(summary)
@@ -67,9 +69,24 @@ class Plan:
 
     experiment: Experiment
     file: Path
-    trial: int
+    trials: Sequence[int]
     run_id: str
+    simulation: Simulation | None
+    results: Mapping[int, TrialResult] = field(default_factory=dict)
     directory: RunDirectory | None = None
+
+
+def _environment(
+    plan: Plan, asked: argparse.Namespace, progress: RunProgress, open_session: ExitStack
+) -> Environment:
+    """What the trials are played on."""
+    if plan.simulation:
+        how = plan.simulation
+        return partial(simulated, plan.experiment, how.speed, progress.warn, emulate=how.emulate)
+    settings = SessionSettings(asked.listen, hub=True, config=asked.zenoh_config)
+    session = open_session.enter_context(Session(settings))
+    _warn_of_bad(plan.experiment, progress)
+    return partial(laboratory, plan.experiment, session, progress.warn)
 
 
 def _begun(asked: argparse.Namespace) -> Plan:
@@ -80,7 +97,10 @@ def _begun(asked: argparse.Namespace) -> Plan:
     _check(asked, experiment)
     joinable = asked.listen or asked.speed
     run_id = secrets.token_hex(RUN_ID_BYTES) if joinable else ""
-    return Plan(experiment, asked.experiment, asked.trial or 0, run_id)
+    if asked.listen:
+        return Plan(experiment, asked.experiment, [asked.trial or 0], run_id, None)
+    simulation = Simulation(asked.speed, asked.emulate)
+    return Plan(experiment, asked.experiment, range(experiment.run.trials), run_id, simulation)
 
 
 def _check(asked: argparse.Namespace, experiment: Experiment) -> None:
@@ -103,16 +123,18 @@ def _refuse_speed(asked: argparse.Namespace) -> None:
 
 
 def _resumed(asked: argparse.Namespace) -> Plan:
-    own = ("experiment", "out", "seed", "moves", "trial")
+    own = ("experiment", "out", "seed", "moves", "trial", "speed")
     given = [name for name in own if getattr(asked, name) is not None]
     if given:
         raise UserError(f"--resume goes on with a run as it was begun: leave out {', '.join(given)}")
-    if not asked.listen:
-        raise UserError("--resume waits for the robots of a laboratory: say where with --listen")
-    _refuse_speed(asked)
     run = InterruptedRun.read(asked.resume)
+    if run.simulation and asked.listen:
+        raise UserError(f"{asked.resume}: was simulated; leave out --listen")
+    if not run.simulation and not asked.listen:
+        raise UserError(f"{asked.resume}: its robots are a laboratory's; say with --listen where to wait")
     require_good(asked.resume, [writable("--resume", asked.resume)])
-    return Plan(run.experiment, run.file, run.trial, run.run_id, run.directory)
+    experiment = run.experiment.changed(processes=asked.processes)
+    return Plan(experiment, run.file, run.trials, run.run_id, run.simulation, run.results, run.directory)
 
 
 def _warn_of_bad(experiment: Experiment, progress: RunProgress) -> None:
@@ -135,6 +157,13 @@ def _parser() -> OneLineParser:
     parser.add_argument("--seed", type=arguments.seed, metavar="N", help="in place of the experiment's")
     parser.add_argument("--moves", type=arguments.moves, metavar="N", help="in place of the experiment's")
     parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    parser.add_argument(
+        "--resume",
+        type=arguments.place,
+        metavar="RUN_DIRECTORY",
+        help="go on with a run whose server ended before it was complete; with --listen on a laboratory's "
+        "robots, whose agents need no restart",
+    )
     simulation = parser.add_argument_group("simulation")
     simulation.add_argument(
         "--processes", type=arguments.processes, metavar="N", help="for the robots; 0 gives each its own"
@@ -161,12 +190,6 @@ def _parser() -> OneLineParser:
         type=arguments.trial,
         metavar="N",
         help="a laboratory runs one trial at a time, from 0; the agents are started with the same number",
-    )
-    real.add_argument(
-        "--resume",
-        type=arguments.place,
-        metavar="RUN_DIRECTORY",
-        help="go on with a run whose server ended before its trial did; the agents need no restart",
     )
     real.add_argument(
         "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"

@@ -8,6 +8,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,13 +18,24 @@ from server.processes.environment import Environment, TrialPlan
 from server.progress import RunProgress
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
+from server.recording.latched import LatchedState
 from server.recording.provenance import metadata, versions
-from server.recording.recorder import Recorder, digest
+from server.recording.recorder import digest
+from server.recording.trial_recorder import TrialRecorder
 from server.run_directory import MANIFEST, RunDirectory
 from server.trial import Trial, TrialResult
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, in_words
 from swarm.runtime.identity import RunIdentity
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """How a run is simulated."""
+
+    speed: float | None
+    """So many times as fast as life; None for lockstep."""
+    emulate: bool
 
 
 @dataclass
@@ -39,7 +51,10 @@ class Run:
     progress: RunProgress
     run_id: str = ""
     """Random, and new with every run; empty in a lockstep, which nobody can join and anybody can repeat."""
-    results: list[TrialResult] = field(default_factory=list)
+    simulation: Simulation | None = None
+    """How it is simulated; None on the robots of a laboratory."""
+    results: dict[int, TrialResult] = field(default_factory=dict)
+    """Of the trials so far; those that an earlier server completed are not repeated."""
     versions: dict[str, str] = field(default_factory=versions)
 
     def run(self) -> dict[str, Any]:
@@ -50,15 +65,17 @@ class Run:
     def _held(self) -> dict[str, Any]:
         began = time.monotonic()
         copy = self._begin()
+        to_do = [trial for trial in self.trials if trial not in self.results]
         state = "interrupted"
         try:
-            for trial in self.trials:
+            for trial in to_do:
                 self.progress.begin(trial)
                 self._trial(trial, copy)
+                self._write_manifest("running")
             state = "complete"
         finally:
             self._write_manifest(state)
-            summary = self._summary(time.monotonic() - began)
+            summary = self._summary(to_do, time.monotonic() - began)
             self.directory.write_json("run.json", {**summary, **self._circumstances()})
             self.directory.release()
         return summary
@@ -68,6 +85,7 @@ class Run:
         try:
             self.directory.reserve()
             copy = self.directory.keep_experiment(self.file)
+            self.directory.close_logs()
             self._write_manifest("running")
         except OSError as error:
             self.directory.remove()
@@ -75,37 +93,52 @@ class Run:
         return copy
 
     def _trial(self, trial: int, file: Path) -> None:
-        """Also of a trial that is interrupted it is known how far it came."""
+        """Also of a trial that is interrupted it is known how far it came.
+
+        On robots a trial goes on from there; a simulated one begins again, and comes to the same.
+        """
+        if self.simulation:
+            self.directory.set_aside(trial)
         program = self.versions["swarm-runtime"]
         identity = RunIdentity.of(self.experiment, trial, self.run_id, program)
         plan = TrialPlan(identity, file, self.directory.output(trial))
         with self.environment(plan) as environment:
             reporter = environment.reporter
-            *before, log = self.directory.logs(trial)
-            earlier = earlier_progress(before)
+            earlier = earlier_progress(self.directory.logs(trial))
             conductor = Conductor(self.experiment, identity, reporter, environment.carrier, earlier)
-            about = metadata(self.experiment, file, identity, self.versions, self.directory.part)
-            recorder = Recorder(log, about)
+            recorder = self._recorder(identity, file)
             health, views = Health(reporter), Views(self.experiment)
             played = Trial(environment, conductor, recorder, health, views, self.progress.show)
             try:
                 played.run()
             finally:
-                self.results.append(played.result())
+                self.results[trial] = played.result()
 
-    def _summary(self, wall_s: float) -> dict[str, Any]:
+    def _recorder(self, identity: RunIdentity, file: Path) -> TrialRecorder:
+        """Goes on from what earlier servers recorded of the trial."""
+        trial, latched = identity.trial, LatchedState(self.experiment)
+        latched.take_up(self.directory.logs(trial))
+        return TrialRecorder(
+            partial(self.directory.log, trial),
+            partial(metadata, self.experiment, file, identity, self.versions),
+            self.experiment.log,
+            latched,
+            self.directory.next_part(trial),
+        )
+
+    def _summary(self, done: Sequence[int], wall_s: float) -> dict[str, Any]:
+        """Of the run; its pace is that of the trials that this server has done."""
         logs = [log for trial in self.trials for log in self.directory.logs(trial)]
-        logs = [log for log in logs if log.exists()]
-        sim_s = sum(result.sim_s for result in self.results)
+        paced_s = sum(self.results[trial].sim_s for trial in done if trial in self.results)
         return {
             "run": str(self.directory.path),
             "run_id": self.run_id,
             "log": [str(log) for log in logs],
             "digest": digest(logs),
-            "moves": sum(result.moves for result in self.results),
-            "sim_s": round(sim_s, 3),
+            "moves": sum(result.moves for result in self.results.values()),
+            "sim_s": round(sum(result.sim_s for result in self.results.values()), 3),
             "wall_s": round(wall_s, 3),
-            "real_time_factor": round(sim_s / wall_s, 2),
+            "real_time_factor": round(paced_s / wall_s, 2),
         }
 
     def _circumstances(self) -> dict[str, Any]:
@@ -114,13 +147,13 @@ class Run:
             "ended": datetime.now(UTC).isoformat(),
             "host": socket.gethostname(),
             "command": sys.argv,
-            "trials": [asdict(result) for result in self.results],
+            "trials": [asdict(result) for _, result in sorted(self.results.items())],
         }
 
     def _write_manifest(self, state: str) -> None:
         """Conditions x trials x seeds, one record each."""
         run = self.experiment.run
-        complete = {number for number, result in enumerate(self.results) if result.complete}
+        complete = {trial: asdict(result) for trial, result in self.results.items() if result.complete}
         records = [
             {
                 "condition": robot.group,
@@ -128,11 +161,13 @@ class Run:
                 "role": robot.role.value,
                 "trial": trial,
                 "seed": run.seed,
-                "log": self.directory.logs(trial)[0].name,
-                "state": "complete" if number in complete else state,
+                "log": self.directory.log(trial).name,
+                "state": "complete" if trial in complete else state,
             }
-            for number, trial in enumerate(self.trials)
+            for trial in self.trials
             for robot in self.experiment.robot
         ]
         about = {"name": run.name, "run_id": self.run_id, "moves": run.moves}
-        self.directory.write_json(MANIFEST, {**about, "trials": records})
+        simulation = asdict(self.simulation) if self.simulation else None
+        content = {**about, "simulation": simulation, "trials": records, "results": complete}
+        self.directory.write_json(MANIFEST, content)

@@ -59,6 +59,8 @@ class Conductor:
         self._standstill = Standstill(experiment)
         self._told_of: set[str] = set()
         self._ending = False
+        self.paused = False
+        """Whether the robots are to stand after their moves."""
         self.moves = {robot.id: 0 for robot in experiment.robot}
         """Moves made so far, by robot."""
         self.best_path = {robot.id: 0 for robot in experiment.learners}
@@ -89,7 +91,24 @@ class Conductor:
         self._ending = all(self.moves[learner] >= self._experiment.run.moves for learner in self.best_path)
         if batch.t_ns >= self._state_due_ns or self._ending:
             self._state_due_ns = batch.t_ns + RUN_STATE_PERIOD_NS
-            self.announce(pb.RunState.ENDED if self._ending else pb.RunState.RUNNING)
+            self.announce(self._phase)
+
+    @property
+    def _phase(self) -> pb.RunState.Phase.ValueType:
+        if self._ending:
+            return pb.RunState.ENDED
+        return pb.RunState.PAUSED if self.paused else pb.RunState.RUNNING
+
+    def pause(self) -> None:
+        """Let the robots stand after their moves, until `go_on`."""
+        self.paused = True
+        self._state_due_ns = 0
+
+    def go_on(self) -> None:
+        """End a pause; how long the robots stood in it does not count."""
+        self.paused = False
+        self._state_due_ns = 0
+        self._standstill = Standstill(self._experiment)
 
     def _take_up(self, earlier: Mapping[str, EarlierProgress]) -> None:
         """Go on from where the trial was when its last server ended."""
@@ -123,7 +142,8 @@ class Conductor:
             if word.message.phase == pb.Visit.DONE:
                 self._copy_errors.visit_done(word.robot, word.message, t_ns)
         self._copy_errors.step(t_ns)
-        self._visits.order_due(t_ns)
+        if not self.paused:
+            self._visits.order_due(t_ns)
         self._camera_views.step(self._truths.take(), self._visits.watching)
 
     def check_progress(self, t_ns: int) -> None:

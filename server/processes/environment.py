@@ -64,6 +64,8 @@ class TrialEnvironment:
     batches_between_flushes: int
     warn: Warn
     """Shows a line to whoever watches."""
+    is_lockstep: bool = False
+    """Whether time stands still while the server does something else."""
     waits_for_people: bool = False
 
 
@@ -96,7 +98,8 @@ def simulated(
             probe = PlacementProbe(partial(place, core_of, cores))
             hub, flush_every = _hub(experiment, plan.identity, session, pace, supervisor, warn, probe)
             reporter = Reporter(hub)
-            yield TrialEnvironment(hub, reporter, SimulatedCarrier(reporter), flush_every, warn)
+            carrier = SimulatedCarrier(reporter)
+            yield TrialEnvironment(hub, reporter, carrier, flush_every, warn, is_lockstep=pace.lockstep)
 
 
 def require_emulation(experiment: Experiment, speed: float | None, *, emulate: bool) -> None:

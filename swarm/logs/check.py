@@ -17,11 +17,11 @@ import polars as pl
 
 from swarm.files import printable
 from swarm.logs.completeness import HealthTable, health_totals
-from swarm.logs.ending import COMPLETE, Ending
+from swarm.logs.ending import COMPLETE, CONTINUED, Ending
 from swarm.logs.identity import LogIdentity, identity_of
 from swarm.logs.reader import LogReader, Part
 from swarm.logs.tables import is_tabled, rows
-from swarm.logs.trial_logs import as_one, by_trial, logs_in
+from swarm.logs.trial_logs import as_one, by_trial, logs_in, misplaced
 from swarm.messages import topics
 from swarm.messages.validation import MAX_T_NS
 
@@ -68,6 +68,8 @@ class _Contents:
     """What the messages of a trial's logs tell themselves, part by part."""
 
     health: HealthTable
+    begins: bool
+    """Whether the trial begins with these logs."""
     times: dict[str, str] = field(default_factory=dict)
     """key -> what is wrong with its times."""
     moves: dict[str, set[int]] = field(default_factory=dict)
@@ -80,7 +82,7 @@ class _Contents:
             found = rows(part, log)
             rejected = len(found.rejected)
             if part.channel.topic is topics.MOVE:
-                self.moves.setdefault(key, set()).update(found.tables[0].frame["number"])
+                self.moves.setdefault(key, set()).update(set(found.tables[0].frame["number"]) - {0})
         self.health.add(as_one(part, log), rejected)
         self._add_times(part)
 
@@ -98,28 +100,38 @@ class _Contents:
 
     def swallowed_moves(self, missing: Mapping[str, int]) -> list[str]:
         """What a restart swallowed, beyond the messages known to be missing: the trial numbers its moves."""
-        counts = {key: max(found) - len(found - {0}) for key, found in self.moves.items() if found}
+        counts = {key: self._span(found) - len(found) for key, found in self.moves.items() if found}
         return [
             f"{key}: {count} moves missing"
             for key, count in sorted(counts.items())
             if count > missing.get(key, 0)
         ]
 
+    def _span(self, numbers: set[int]) -> int:
+        """How many moves there should be, from the first to the last."""
+        return max(numbers) - (0 if self.begins else min(numbers) - 1)
+
 
 def check_log(path: Path) -> LogCheck:
-    """Read every byte and decode every message; LogError for what is no log of a run."""
+    """Read every byte and decode every message; LogError for what is no log of a run.
+
+    One of several logs of a trial is checked by itself.
+    """
     about = LogReader(path)
     about.read_metadata()
-    return _checked([identity_of(about)])
+    identity = identity_of(about)
+    return _checked([identity], [] if identity.ending.state == CONTINUED else [identity.ending.fault])
 
 
 def check_run(run: Path) -> list[LogCheck]:
     """The trials of a run directory, each with all of its logs: what is missing between them is missing."""
-    return [_checked(parts) for parts in by_trial(logs_in(run, []))]
+    logs = logs_in(run, [])
+    return [_checked(parts, [*misplaced(parts, logs[0]), parts[0].ending.fault]) for parts in by_trial(logs)]
 
 
-def _checked(parts: list[LogIdentity]) -> LogCheck:
-    contents = _Contents(HealthTable(parts[0]))
+def _checked(parts: list[LogIdentity], about: list[str]) -> LogCheck:
+    """`about`: why the logs as a whole are not those of a complete trial; empty texts say nothing."""
+    contents = _Contents(HealthTable(parts[0]), begins=parts[0].part == 1)
     readers = [_read(part, contents) for part in parts]
     found = contents.health.frame()
     damage = [fault for reader in readers for fault in _damage(reader, named=len(parts) > 1)]
@@ -128,7 +140,7 @@ def _checked(parts: list[LogIdentity]) -> LogCheck:
         sum(reader.messages for reader in readers),
         all(reader.recorded_messages is not None for reader in readers),
         [*damage, *contents.damage(), *_bad_messages(found)],
-        [*_lacking(parts[0].ending, found, contents)],
+        [*filter(None, about), *_lacking(parts[0].ending, found, contents)],
         _remarks(found),
     )
 
@@ -141,8 +153,6 @@ def _read(identity: LogIdentity, contents: _Contents) -> LogReader:
 
 
 def _lacking(ending: Ending, health: pl.DataFrame, contents: _Contents) -> Iterator[str]:
-    if ending.fault:
-        yield ending.fault
     yield from _missing(health)
     yield from contents.swallowed_moves(dict(health.group_by("key").agg(pl.col("missing").sum()).iter_rows()))
     if ending.state == COMPLETE:

@@ -1,7 +1,8 @@
 """How complete a log is: for each key and each start of its sender, what was seen and what is missing.
 
 A sender numbers its messages of a key from 1. So every number up to the last must be there; the last one is
-what the sender says in its closing account, and without one at least the last that was seen.
+what the sender says in its closing account, and without one at least the last that was seen. A log that goes
+on from others is asked for what comes after them.
 """
 
 from __future__ import annotations
@@ -67,7 +68,7 @@ class HealthTable:
         """A row for each key and epoch, in order; `restart` counts a key's epochs from 0.
 
         `sent` is the last number by the sender's own account, null if it gave none. `missing` messages, in
-        `gaps` stretches, are those from 1 to the last.
+        `gaps` stretches, are those from 1 (or from where the trial's logs before this one end) to the last.
         """
         channels = sorted(self._all_channels(), key=lambda channel: (channel.key, channel.epoch, channel.id))
         restarts: dict[str, int] = {}
@@ -82,12 +83,18 @@ class HealthTable:
     def _all_channels(self) -> list[LogChannel]:
         """Those seen, and those of which a sender says that they should have been."""
         seen = {(channel.key, channel.epoch) for channel in self._sequences}
-        unseen = [sender for sender, last in self._sent.items() if last > 0 and sender not in seen]
+        before = self.identity.before
+        unseen = [
+            sender
+            for sender, last in self._sent.items()
+            if last > before.get(sender, 0) and sender not in seen
+        ]
         return [*self._sequences, *(LogChannel(0, key, epoch, "", "") for key, epoch in unseen)]
 
     def _row(self, channel: LogChannel) -> dict[str, Any]:
         topic = topic_of(channel.key)
-        sent = self._sent.get((channel.key, channel.epoch))
+        sender = (channel.key, channel.epoch)
+        sent = self._sent.get(sender)
         none = [np.empty(0, dtype=np.uint32)]
         return {
             "log": self.identity.trial_log,
@@ -101,16 +108,20 @@ class HealthTable:
             "rejected": self._rejected.get(channel, 0),
             "readable": channel.topic is not None or channel.is_for_viewers or channel.id == 0,
             "sent": sent,
-            **_numbers(np.concatenate(self._sequences.get(channel, none)), sent or 0),
+            **_numbers(
+                np.concatenate(self._sequences.get(channel, none)),
+                self.identity.before.get(sender, 0),
+                sent or 0,
+            ),
             **_rates(np.concatenate(self._times.get(channel, [np.empty(0, dtype=np.int64)]))),
         }
 
 
-def _numbers(sequence: npt.NDArray[np.uint32], sent: int) -> dict[str, int | None]:
-    """What the sequence numbers, in the order of the log, tell; `sent` is the last that there must be."""
+def _numbers(sequence: npt.NDArray[np.uint32], before: int, sent: int) -> dict[str, int | None]:
+    """What the sequence numbers, in the order of the log, tell; all after `before` up to `sent` must be there."""
     once = np.unique(sequence).astype(np.int64)
-    last = max(sent, int(once[-1]) if len(once) else 0)
-    steps = np.diff(once, prepend=0, append=last + 1)
+    last = max(before, sent, int(once[-1]) if len(once) else 0)
+    steps = np.diff(once, prepend=before, append=last + 1)
     return {
         "messages": len(sequence),
         "first_sequence": int(once[0]) if len(once) else None,

@@ -4,6 +4,9 @@ The recorder writes two metadata records when it closes a log. `end` has the tri
 `sent` has "KEY EPOCH" -> the last sequence number, as its sender says. In lockstep the hub has every
 process's whole output; in real time each process gives an account of what it sent as it leaves. A log
 without them was cut short, or its server was killed. `recovered` is in a log that `swarm recover` made.
+
+A later log of a trial has `before`: the last numbers that stand in the logs before it. So each of them can be
+checked by itself.
 """
 
 from __future__ import annotations
@@ -11,8 +14,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-END, SENT, RECOVERED = "end", "sent", "recovered"
+END, SENT, RECOVERED, BEFORE = "end", "sent", "recovered", "before"
 COMPLETE = "complete"
+CONTINUED = "continued"
+"""Of a log that was closed before its trial was over: the next one goes on."""
+KILLED = {"state": "interrupted", "reason": "its server was killed"}
+"""What is put into the log of a server that could not say how the trial ended."""
 MAX_NUMBER = 2**32 - 1
 """Sequence numbers have 32 bits in a log."""
 Sender = tuple[str, int]
@@ -38,6 +45,8 @@ class Ending:
             return f"recovered from a damaged log: {self.lost}"
         if not self.state:
             return "how the trial ended is not recorded: its server was killed, or the log is cut short"
+        if self.state == CONTINUED:
+            return "the trial goes on in a later log, which is not here"
         return "" if self.state == COMPLETE else f"the trial was {self.state}: {self.reason}"
 
 
@@ -53,19 +62,29 @@ def last_of(endings: Sequence[Ending]) -> Ending:
 def ending_of(metadata: Mapping[str, Mapping[str, str]]) -> Ending:
     """What the metadata of a log say of its end."""
     end = metadata.get(END, {})
-    sent = {}
-    for name, number in metadata.get(SENT, {}).items():
+    lost = metadata.get(RECOVERED, {}).get("lost", "")
+    sent = numbers_of(metadata.get(SENT, {}))
+    return Ending(end.get("state", ""), end.get("reason", ""), sent, lost)
+
+
+def numbers_of(record: Mapping[str, str]) -> dict[Sender, int]:
+    """A number for each sender, from a metadata record; what makes no sense is left out."""
+    numbers = {}
+    for name, number in record.items():
         key, _, epoch = name.rpartition(" ")
         if key and _is_number(epoch) and _is_number(number) and int(number) <= MAX_NUMBER:
-            sent[key, int(epoch)] = int(number)
-    lost = metadata.get(RECOVERED, {}).get("lost", "")
-    return Ending(end.get("state", ""), end.get("reason", ""), sent, lost)
+            numbers[key, int(epoch)] = int(number)
+    return numbers
+
+
+def numbers_record(numbers: Mapping[Sender, int]) -> dict[str, str]:
+    """The metadata record of a number for each sender."""
+    return {f"{key} {epoch}": str(number) for (key, epoch), number in sorted(numbers.items())}
 
 
 def ending_records(state: str, reason: str, sent: Mapping[Sender, int]) -> dict[str, dict[str, str]]:
     """The metadata records of an ending."""
-    numbers = {f"{key} {epoch}": str(number) for (key, epoch), number in sorted(sent.items())}
-    return {END: {"state": state, "reason": reason}, SENT: numbers}
+    return {END: {"state": state, "reason": reason}, SENT: numbers_record(sent)}
 
 
 def _is_number(text: str) -> bool:
