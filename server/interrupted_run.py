@@ -39,11 +39,8 @@ class InterruptedRun:
         try:
             trials = tuple(dict.fromkeys(int(record["trial"]) for record in manifest["trials"]))
             (seed,) = {int(record["seed"]) for record in manifest["trials"]}
-            run_id, moves, simulation = (
-                str(manifest["run_id"]),
-                int(manifest["moves"]),
-                manifest["simulation"],
-            )
+            run_id, moves = str(manifest["run_id"]), int(manifest["moves"])
+            simulation = manifest["simulation"]
             results = {int(trial): TrialResult(**found) for trial, found in manifest["results"].items()}
             simulated = None if simulation is None else Simulation(**simulation)
         except (AttributeError, KeyError, TypeError, ValueError) as error:

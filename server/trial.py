@@ -122,7 +122,7 @@ class Trial:
             self._conductor.check_progress(t_ns)
 
     def _await_room(self) -> None:
-        """The trial pauses while the disk has no room: robots stand after their moves; a lockstep just stops."""
+        """While the disk has no room the trial pauses: robots stand after their moves, a lockstep stops."""
         lack = self._recorder.waits_for
         if bool(lack) == self._conductor.paused:
             return

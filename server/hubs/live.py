@@ -109,8 +109,8 @@ class LiveHub:
 
     def finish(self) -> Batch:
         """The run's state ENDED has told the processes already: wait until they have given account."""
-        there = [one.epoch for kind in ("robot", "tracker") for one in present(self._session, kind)]
-        leaving = {epoch for epoch in there if self._admission.knows(epoch)}
+        there = [one for kind in ("robot", "tracker") for one in present(self._session, kind)]
+        leaving = {one.epoch for one in there if self._admission.admits(one)}
         deadline_s = time.monotonic() + LAST_WORDS_S
         self._hear_accounts()
         while leaving - self._gone and time.monotonic() < deadline_s:
@@ -124,8 +124,9 @@ class LiveHub:
         return {sender: last for sender, last in (self._accounts | own).items() if _is_logged(sender[0])}
 
     def _hear_accounts(self) -> None:
+        samples = self._closing.poll()
         self._attendance.look()
-        for sample in self._closing.poll():
+        for sample in samples:
             header = Header.unpack(sample.attachment)
             if header is not None and self._admission.knows(header.epoch):
                 self._gone.add(header.epoch)

@@ -90,7 +90,7 @@ def writable(about: str, directory: Path) -> Finding:
 
 
 def lack_of_room(place: Path, free: Callable[[Path], int], more_bytes: int = 0) -> str:
-    """Why nothing more may be recorded: the reserve, or so much beyond it, is touched. Empty if there is room."""
+    """Why nothing more may be recorded: less than the reserve, and so much more, is free. Empty if it may."""
     if free(place) >= RESERVE_BYTES + more_bytes:
         return ""
     return f"the disk of {place} is full but for {_megabytes(RESERVE_BYTES)}: free some space"

@@ -66,8 +66,8 @@ def simulate_command(
         Path | None,
         typer.Option(
             metavar="RUN",
-            help="In place of an experiment: the directory of a run that was interrupted. Its finished trials "
-            "are kept, the others are done.",
+            help="In place of an experiment: a run that was interrupted. Its finished trials are kept, the "
+            "others are done.",
             callback=good_place,
         ),
     ] = None,

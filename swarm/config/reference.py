@@ -17,6 +17,7 @@ TABLES = {"run": "[run]", "arena": "[arena]", "learning": "[learning]", "visits"
     "body": "[body]",
     "tracker": "[tracker]",
     "simulation": "[simulation]",
+    "log": "[log]",
     "robot": "[[robot]]",
 }
 

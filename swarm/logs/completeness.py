@@ -118,7 +118,7 @@ class HealthTable:
 
 
 def _numbers(sequence: npt.NDArray[np.uint32], before: int, sent: int) -> dict[str, int | None]:
-    """What the sequence numbers, in the order of the log, tell; all after `before` up to `sent` must be there."""
+    """What sequence numbers, in the order of the log, tell; those from `before` to `sent` must be there."""
     once = np.unique(sequence).astype(np.int64)
     last = max(before, sent, int(once[-1]) if len(once) else 0)
     steps = np.diff(once, prepend=before, append=last + 1)

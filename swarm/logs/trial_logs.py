@@ -42,7 +42,7 @@ def logs_in(run: Path, notes: list[str]) -> list[LogIdentity]:
 
 
 def logs_of_trial(places: Iterable[Path]) -> list[Path]:
-    """Files as they are, and of a run directory all logs of its trial; UserError if it holds several trials."""
+    """Files as they are, and of a run directory the logs of its trial; UserError if it holds several."""
     found = []
     for place in places:
         trials = by_trial(logs_in(place, [])) if place.is_dir() else []
@@ -88,7 +88,7 @@ def joined(logs: Iterable[LogIdentity]) -> list[LogIdentity]:
 
 
 def _trial_of(log: LogIdentity) -> object:
-    """What the parts of a trial have in common: of a simulation in lockstep, which has no run id, the place."""
+    """What the parts of a trial have in common: in lockstep, where no run has an id, the place."""
     return (log.run_id or log.path.parent, log.run, *log.replicate)
 
 

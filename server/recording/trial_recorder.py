@@ -1,0 +1,195 @@
+"""The log of a trial: a file, and another one when the first has reached its size or its time, or when the
+disk had no more room.
+
+Every file is closed whole and can be read alone: what was said once stands in each of them. While the disk
+has no room nothing that must not be lost is lost: it waits in memory, and whoever conducts the trial pauses
+it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from google.protobuf.message import Message
+
+from server.hubs.hub import Batch
+from server.recording.foxglove_views import ARENA
+from server.recording.latched import LatchedState
+from server.recording.recorder import LeftOut, Recorder
+from swarm.checkup.machine import free_bytes, lack_of_room
+from swarm.clock import NS_PER_S
+from swarm.config.experiment import LogSettings
+from swarm.errors import RunFailedError, UserError, in_words
+from swarm.logs.ending import CONTINUED, Sender
+from swarm.logs.recover import close_log
+from swarm.logs.trial_logs import closed_path, open_path
+from swarm.messages.topics import Delivery, topic_of
+
+About = Callable[[int], Mapping[str, Mapping[str, str]]]
+"""The metadata of a part."""
+MB = 1_000_000
+S_PER_H = 3600
+MORE_BYTES = 16 << 20
+"""Beyond the reserve, before a trial that lacked room goes on: else it would stop again at once."""
+
+
+class TrialRecorder:
+    """Records one trial from its part number `first_part` on; `path_of` says where each part goes."""
+
+    def __init__(
+        self,
+        path_of: Callable[[int], Path],
+        about: About,
+        settings: LogSettings,
+        latched: LatchedState,
+        first_part: int = 1,
+        free: Callable[[Path], int] = free_bytes,
+    ) -> None:
+        self._path_of = path_of
+        self._about = about
+        self._most_bytes = round(settings.file_mb * MB)
+        self._most_ns = round(settings.file_h * S_PER_H * NS_PER_S)
+        self._latched = latched
+        self._free = free
+        self._part = first_part
+        self._unflushed: list[Batch] = []
+        """What a file that cannot be written any more would lack."""
+        self._arena: Message | None = None
+        self._t_ns = self._began_ns = 0
+        self._messages = 0
+        self._disk_error = ""
+        self._abandoned: list[Path] = []
+        """Files that the disk took no more of."""
+        self.left_out = LeftOut()
+        self.waits_for = ""
+        """What keeps the trial from being recorded; empty while it is."""
+        self._recorder: Recorder | None = self._opened()
+
+    @property
+    def messages(self) -> int:
+        """Recorded so far."""
+        return self._messages + (self._recorder.messages if self._recorder else 0)
+
+    @property
+    def disk_error(self) -> str:
+        """Why the disk could not take the log at some time; empty if it always could."""
+        return self._disk_error or (self._recorder.disk_error if self._recorder else "")
+
+    def write(self, batch: Batch) -> None:
+        """Append a batch; its order is the log's order."""
+        self._began_ns = self._began_ns or batch.t_ns
+        self._t_ns = batch.t_ns
+        for item in batch.items:
+            self._latched.heard(item.key, item.payload)
+        if self._recorder is None:
+            batch = self._kept(batch)
+        self._unflushed.append(batch)
+        self._try(lambda recorder: recorder.write(batch))
+
+    def write_view(self, topic: str, message: Message, t_ns: int) -> None:
+        """Append a message for viewers; nobody misses it while the disk is full."""
+        if topic == ARENA:
+            self._arena = message
+        self._try(lambda recorder: recorder.write_view(topic, message, t_ns))
+
+    def flush(self) -> None:
+        """Hand everything to the operating system; go on in another file if this one is large or old enough,
+        stop recording if there is too little room, and begin again once there is enough.
+        """
+        if self._recorder is None:
+            self._go_on()
+            return
+        self._try(Recorder.flush)
+        if self._recorder:
+            self._latched.finished(self._recorder.last)
+            self._unflushed.clear()
+            self._end_file_if_due(self._recorder)
+
+    def end(self, state: str, reason: str, accounts: Mapping[Sender, int] | None) -> None:
+        """Write how the trial ended, and what every sender has sent by its own account.
+
+        `accounts` is None if the hub had everything that was sent.
+        """
+        if self._recorder is None:
+            self._go_on(reserve=False)
+        if self._recorder:
+            self._latched.finished(self._recorder.last)
+        sent = self._latched.last if accounts is None else accounts
+        self._try(lambda recorder: recorder.end(state, reason, sent))
+
+    def close(self) -> None:
+        """Write the index, and give the file its name; a second call does nothing."""
+        self._try(Recorder.close)
+        recorder, self._recorder = self._recorder, None
+        if recorder:
+            self._messages += recorder.messages
+            self._disk_error = self._disk_error or recorder.disk_error
+            recorder.path.rename(closed_path(recorder.path))
+
+    def _end_file_if_due(self, recorder: Recorder) -> None:
+        lack = lack_of_room(recorder.path.parent, self._free)
+        is_large = recorder.size_bytes >= self._most_bytes
+        if lack:
+            self._end_file(lack)
+            self.waits_for = lack
+        elif is_large or self._t_ns - self._began_ns >= self._most_ns:
+            self._end_file("the file is large or old enough")
+            self._go_on()
+
+    def _end_file(self, reason: str) -> None:
+        self._try(lambda recorder: recorder.end(CONTINUED, reason, {}))
+        self.close()
+        self._part += 1
+
+    def _go_on(self, *, reserve: bool = True) -> None:
+        """Begin the next file, if there is room for one, with what it has to hold."""
+        place = self._path_of(self._part).parent
+        lack = lack_of_room(place, self._free, MORE_BYTES) if reserve else ""
+        try:
+            self._recorder = None if lack else self._opened()
+        except (OSError, RunFailedError, UserError) as error:
+            lack = str(error)
+        self.waits_for = lack
+        if self._recorder is None:
+            return
+        if self._arena is not None:
+            self.write_view(ARENA, self._arena, self._t_ns)
+        while self._abandoned:
+            close_log(self._abandoned.pop(0), {"state": CONTINUED, "reason": "the disk took no more"})
+        self._try(self._write_unflushed)
+
+    def _write_unflushed(self, recorder: Recorder) -> None:
+        for batch in self._unflushed:
+            recorder.write(batch)
+
+    def _opened(self) -> Recorder:
+        latched = self._latched.records() if self._part > 1 else {}
+        self._began_ns = self._t_ns
+        path = open_path(self._path_of(self._part))
+        return Recorder(path, {**self._about(self._part), **latched}, left_out=self.left_out)
+
+    def _try(self, work: Callable[[Recorder], None]) -> None:
+        """Do something with the open file; if the disk refuses, the file stays as it was flushed last."""
+        if self._recorder is None:
+            return
+        try:
+            work(self._recorder)
+        except OSError as error:
+            recorder, self._recorder = self._recorder, None
+            self.waits_for = self._disk_error = in_words(error)
+            self._messages += recorder.messages
+            self._part += 1
+            recorder.abandon()
+            self._abandoned.append(recorder.path)
+
+    def _kept(self, batch: Batch) -> Batch:
+        """What of a batch must not be lost."""
+        kept = []
+        for item in batch.items:
+            found = topic_of(item.key)
+            if found and found[0].delivery is Delivery.EVERY:
+                kept.append(item)
+            elif found and found[0].logged:
+                self.left_out.while_paused[item.key] += 1
+        return Batch(batch.t_ns, kept)
