@@ -57,6 +57,8 @@ class TrialRecorder:
         """What a file that cannot be written any more would lack."""
         self._arena: Message | None = None
         self._t_ns = self._began_ns = 0
+        self._is_due = False
+        """Whether what comes next goes into another file."""
         self._messages = 0
         self._disk_error = ""
         self._abandoned: list[Path] = []
@@ -80,6 +82,9 @@ class TrialRecorder:
         """Append a batch; its order is the log's order."""
         self._began_ns = self._began_ns or batch.t_ns
         self._t_ns = batch.t_ns
+        if self._is_due and batch.items:
+            self._end_file("the file is large or old enough")
+            self._go_on()
         for item in batch.items:
             self._latched.heard(item.key, item.payload)
         if self._recorder is None:
@@ -94,8 +99,8 @@ class TrialRecorder:
         self._try(lambda recorder: recorder.write_view(topic, message, t_ns))
 
     def flush(self) -> None:
-        """Hand everything to the operating system; go on in another file if this one is large or old enough,
-        stop recording if there is too little room, and begin again once there is enough.
+        """Hand everything to the operating system. What comes next goes into another file if this one is large
+        or old enough; nothing is recorded while there is too little room.
         """
         if self._recorder is None:
             self._go_on()
@@ -104,7 +109,7 @@ class TrialRecorder:
         if self._recorder:
             self._latched.finished(self._recorder.last)
             self._unflushed.clear()
-            self._end_file_if_due(self._recorder)
+            self._look_at_limits(self._recorder)
 
     def end(self, state: str, reason: str, accounts: Mapping[Sender, int] | None) -> None:
         """Write how the trial ended, and what every sender has sent by its own account.
@@ -127,20 +132,19 @@ class TrialRecorder:
             self._disk_error = self._disk_error or recorder.disk_error
             recorder.path.rename(closed_path(recorder.path))
 
-    def _end_file_if_due(self, recorder: Recorder) -> None:
+    def _look_at_limits(self, recorder: Recorder) -> None:
+        is_old = self._t_ns - self._began_ns >= self._most_ns
+        self._is_due = is_old or recorder.size_bytes >= self._most_bytes
         lack = lack_of_room(recorder.path.parent, self._free)
-        is_large = recorder.size_bytes >= self._most_bytes
         if lack:
             self._end_file(lack)
             self.waits_for = lack
-        elif is_large or self._t_ns - self._began_ns >= self._most_ns:
-            self._end_file("the file is large or old enough")
-            self._go_on()
 
     def _end_file(self, reason: str) -> None:
         self._try(lambda recorder: recorder.end(CONTINUED, reason, {}))
         self.close()
         self._part += 1
+        self._is_due = False
 
     def _go_on(self, *, reserve: bool = True) -> None:
         """Begin the next file, if there is room for one, with what it has to hold."""
