@@ -99,8 +99,8 @@ class TrialRecorder:
         self._try(lambda recorder: recorder.write_view(topic, message, t_ns))
 
     def flush(self) -> None:
-        """Hand everything to the operating system. What comes next goes into another file if this one is large
-        or old enough; nothing is recorded while there is too little room.
+        """Hand everything to the operating system. What comes next goes into another file if this one is
+        large or old enough; nothing is recorded while there is too little room.
         """
         if self._recorder is None:
             self._go_on()

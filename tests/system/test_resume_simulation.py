@@ -1,4 +1,4 @@
-"""A simulation that was interrupted: its finished trials are kept, and the rest comes to the same as without."""
+"""A simulation that was interrupted: its finished trials are kept, the rest comes to the same."""
 
 from __future__ import annotations
 

@@ -44,9 +44,7 @@ class Disk:
 class SegmentedLog:
     """A trial of one robot that makes moves, a flush after each."""
 
-    def __init__(
-        self, run: Path, settings: LogSettings, disk: Callable[[Path], int], seed: int = 1
-    ) -> None:
+    def __init__(self, run: Path, settings: LogSettings, disk: Callable[[Path], int], seed: int = 1) -> None:
         run.mkdir(exist_ok=True)
         self.seed = seed
         self.directory = RunDirectory(run)
@@ -135,7 +133,8 @@ def test_a_file_that_is_missing_is_named(hourly: SegmentedLog) -> None:
     assert "part 2 of trial 0 is not here" in faults
     assert any("moves missing" in fault or "messages missing" in fault for fault in faults)
     hourly.directory.log(0, 3).unlink()
-    assert check_run(hourly.directory.path)[0].faults == ["the trial goes on in a later log, which is not here"]
+    faults = check_run(hourly.directory.path)[0].faults
+    assert faults == ["the trial goes on in a later log, which is not here"]
 
 
 def test_a_file_that_is_there_twice_or_of_another_run_is_named(hourly: SegmentedLog, tmp_path: Path) -> None:
@@ -210,9 +209,9 @@ def test_what_a_killed_server_left_open_is_closed_and_gone_on_from(tmp_path: Pat
     (tmp_path / "run" / "trial-001.mcap.part").write_bytes(b"")
     log.directory.close_logs()
     assert names(log) == ["trial-000.mcap"]
-    assert check_log(log.directory.log(0)).faults == [
-        "the trial was interrupted: its server was killed"
-    ], "that it ends early is no damage"
+    assert check_log(log.directory.log(0)).faults == ["the trial was interrupted: its server was killed"], (
+        "that it ends early is no damage"
+    )
     kept = open_moves(log)
     log.open(LogSettings(), Disk())
     log.moves = len(kept)
