@@ -101,12 +101,14 @@ class Run:
             self.directory.set_aside(trial)
         program = self.versions["swarm-runtime"]
         identity = RunIdentity.of(self.experiment, trial, self.run_id, program)
-        plan = TrialPlan(identity, file, self.directory.output(trial))
+        logs, latched = self.directory.logs(trial), LatchedState(self.experiment)
+        latched.take_up(logs)
+        plan = TrialPlan(identity, file, self.directory.output(trial), latched.last)
         with self.environment(plan) as environment:
             reporter = environment.reporter
-            earlier = earlier_progress(self.directory.logs(trial))
+            earlier = earlier_progress(logs)
             conductor = Conductor(self.experiment, identity, reporter, environment.carrier, earlier)
-            recorder = self._recorder(identity, file)
+            recorder = self._recorder(identity, file, latched)
             health, views = Health(reporter), Views(self.experiment)
             played = Trial(environment, conductor, recorder, health, views, self.progress.show)
             try:
@@ -114,10 +116,9 @@ class Run:
             finally:
                 self.results[trial] = played.result()
 
-    def _recorder(self, identity: RunIdentity, file: Path) -> TrialRecorder:
+    def _recorder(self, identity: RunIdentity, file: Path, latched: LatchedState) -> TrialRecorder:
         """Goes on from what earlier servers recorded of the trial."""
-        trial, latched = identity.trial, LatchedState(self.experiment)
-        latched.take_up(self.directory.logs(trial))
+        trial = identity.trial
         return TrialRecorder(
             partial(self.directory.log, trial),
             partial(metadata, self.experiment, file, identity, self.versions),

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 
 from server.hubs.attendance import Tell
+from swarm.logs.ending import Sender
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Item
 from swarm.messages.topics import topic_of
@@ -42,6 +43,15 @@ class Admission:
         elif presence.kind in SPEAKING_FOR_ALL:
             self._served_by.add(presence.epoch)
         return not reason
+
+    def admit(self, senders: Iterable[Sender]) -> None:
+        """Who stands in the logs of a trial took part in it, though its process may be gone."""
+        for key, epoch in senders:
+            found = topic_of(key)
+            if found and found[1] and not found[0].to_robot:
+                self._admitted.add((found[1], epoch))
+            else:
+                self._served_by.add(epoch)
 
     def knows(self, epoch: int) -> bool:
         """Whether an epoch is of somebody who took part."""

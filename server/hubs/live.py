@@ -13,6 +13,7 @@ from server.hubs.admission import Admission
 from server.hubs.attendance import Attendance
 from server.hubs.clock_watch import ClockWatch
 from server.hubs.hub import Batch
+from server.hubs.unheard import Unheard, must_not_be_lost
 from swarm.clock import WallClock
 from swarm.config.experiment import Experiment
 from swarm.logs.ending import Sender
@@ -46,16 +47,20 @@ class LiveHub:
         identity: RunIdentity,
         check: Callable[[], None],
         warn: Callable[[str], None],
+        earlier: Mapping[Sender, int] | None = None,
     ) -> None:
         self._session = session
         self._clock = clock
         self._ticks: Iterator[int] = clock.ticks(experiment.simulation.tick_s)
         self._check = check
         self._warn = warn
-        self._inboxes = [session.inbox(key, Delivery.EVERY) for key in EVERYTHING]
+        earlier = earlier or {}
+        self._inboxes = [session.recovering_inbox(key) for key in EVERYTHING]
+        self._unheard = Unheard(earlier)
         self._live = LivePublisher(session, clock, epoch=time.time_ns())
         robots = [robot.id for robot in experiment.robot]
         self._admission = Admission(identity.fingerprint, robots, self._live.epoch, self._tell)
+        self._admission.admit(earlier)
         watch = session.presence_watch(ALIVE_ROBOTS_AND_TRACKERS)
         self._attendance = Attendance(watch, robots, self._admission.admits, self._tell)
         self._clocks = ClockWatch(clock.speed, self._tell)
@@ -80,7 +85,7 @@ class LiveHub:
         while missing := self._attendance.missing:
             self._check()
             next(self._ticks)
-            self._early.extend(item for item in self._received() if _must_not_be_lost(item.key))
+            self._early.extend(item for item in self._received() if must_not_be_lost(item.key))
             if time.monotonic() - named_s > NAMED_EVERY_S:
                 named_s = time.monotonic()
                 self._warn(f"waiting for {', '.join(missing)}")
@@ -113,10 +118,21 @@ class LiveHub:
         leaving = {one.epoch for one in there if self._admission.admits(one)}
         deadline_s = time.monotonic() + LAST_WORDS_S
         self._hear_accounts()
-        while leaving - self._gone and time.monotonic() < deadline_s:
+        items = self._received()
+        while self._is_awaited(leaving) and time.monotonic() < deadline_s:
             next(self._ticks)
+            items += self._received()
             self._hear_accounts()
-        return self.unsent()
+        return Batch(self._clock.now_ns(), items + self._received())
+
+    def _is_awaited(self, leaving: set[int]) -> bool:
+        """Whether somebody who leaves has not given account, or has sent more than has come."""
+        return bool(leaving - self._gone) or self._unheard.lacks(self._accounts)
+
+    @property
+    def recovered(self) -> Mapping[Sender, int]:
+        """How many messages of each sender had been lost on their way, and came later."""
+        return self._unheard.recovered
 
     def accounts(self) -> Mapping[Sender, int]:
         """What the processes that have left said, and what the server itself has sent."""
@@ -143,7 +159,7 @@ class LiveHub:
         """A sender's presence arrives before its first message, and so is looked at after the messages."""
         items = [item for inbox in self._inboxes for item in self._items(inbox.poll())]
         self._attendance.look()
-        return [item for item in items if self._admission.accepts(item)]
+        return self._unheard.of(filter(self._admission.accepts, items), self._clock.now_ns())
 
     def _items(self, samples: Iterable[WireSample]) -> Iterator[Item]:
         for sample in samples:
@@ -152,11 +168,6 @@ class LiveHub:
                 self.without_header += 1
             else:
                 yield Item(sample.key, header, sample.payload)
-
-
-def _must_not_be_lost(key: str) -> bool:
-    found = topic_of(key)
-    return found is not None and found[0].delivery is Delivery.EVERY
 
 
 def _is_logged(key: str) -> bool:

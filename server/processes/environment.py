@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -24,6 +24,7 @@ from server.reporter import Reporter
 from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import REAL_LINKS, Experiment
 from swarm.errors import UserError
+from swarm.logs.ending import Sender
 from swarm.parallel import available_cores
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim
@@ -46,6 +47,8 @@ class TrialPlan:
     identity: RunIdentity
     file: Path
     output: Path
+    earlier: Mapping[Sender, int] = field(default_factory=dict)
+    """The last number of each sender in the logs that an earlier server left."""
 
     @property
     def trial(self) -> int:
@@ -164,7 +167,7 @@ def laboratory(
 ) -> Iterator[TrialEnvironment]:
     """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
     claim(session, _presence(plan.identity))
-    hub = LiveHub(session, unix_clock(), experiment, plan.identity, _nothing_to_check, warn)
+    hub = LiveHub(session, unix_clock(), experiment, plan.identity, _nothing_to_check, warn, plan.earlier)
     reporter = Reporter(hub)
     carrier = Operator(reporter, warn)
     yield TrialEnvironment(hub, reporter, carrier, _live_flush(experiment, 1.0), warn, waits_for_people=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Protocol, TypeVar
 
 from google.protobuf.message import Message
@@ -11,11 +11,12 @@ from swarm.clock import WallClock
 from swarm.errors import RunFailedError
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
-from swarm.messages.header import Header
+from swarm.messages.header import Header, Item
 from swarm.messages.topics import ACCOUNT, Delivery, Topic
 from swarm.runtime.account import pack_account
 from swarm.runtime.clock_offset import ClockOffset, described
 from swarm.runtime.liveliness import ALIVE_SERVER, ServerWatch
+from swarm.runtime.spool import Spool
 from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Inbox, Publisher, Session
 
@@ -70,8 +71,9 @@ class Sequencer:
 class LivePublisher:
     """Sends messages over the network, each with its sender's epoch, its number and the time."""
 
-    def __init__(self, session: Session, clock: WallClock, epoch: int) -> None:
+    def __init__(self, session: Session, clock: WallClock, epoch: int, spool: Spool | None = None) -> None:
         self.epoch = epoch
+        self._spool = spool
         self._session = session
         self._clock = clock
         self._sequencer = Sequencer()
@@ -81,9 +83,24 @@ class LivePublisher:
         """Send a message under the topic's key, of a robot if it has one."""
         key = topic.key(robot)
         header = Header(self.epoch, self._sequencer.following(key), self._clock.now_ns())
-        if key not in self._publishers:
-            self._publishers[key] = self._session.publisher(key, topic.delivery)
-        self._publishers[key].put(message.SerializeToString(), attachment=header.pack())
+        item = Item(key, header, message.SerializeToString())
+        if self._spool and topic.delivery is Delivery.EVERY:
+            self._spool.put(item)
+        self._put(item, topic.delivery)
+
+    def repeat(self, items: Iterable[Item]) -> None:
+        """Send what an earlier start of this process has sent, as it was, for a server that missed it."""
+        for item in items:
+            self._put(item, Delivery.EVERY)
+
+    def _put(self, item: Item, delivery: Delivery) -> None:
+        if item.key not in self._publishers:
+            keeps = delivery is Delivery.EVERY
+            session = self._session
+            self._publishers[item.key] = (
+                session.keeping_publisher(item.key) if keeps else session.publisher(item.key, delivery)
+            )
+        self._publishers[item.key].put(item.payload, attachment=item.header.pack())
 
     @property
     def sent(self) -> Mapping[str, int]:
@@ -91,10 +108,16 @@ class LivePublisher:
         return self._sequencer.last
 
     def give_account(self, name: str) -> None:
-        """Tell the server, as the last thing, how many messages of each key have been sent."""
-        header = Header(self.epoch, 1, self._clock.now_ns())
+        """Tell the server, as the last thing, how many messages of each key have been sent; also by earlier
+        starts of this process, of what must not be lost.
+        """
         publisher = self._session.publisher(ACCOUNT.format(name=name), Delivery.EVERY)
-        publisher.put(pack_account(self.sent), attachment=header.pack())
+        accounts: dict[int, dict[str, int]] = {self.epoch: dict(self.sent)}
+        for item in self._spool.left if self._spool else ():
+            accounts.setdefault(item.header.epoch, {})[item.key] = item.header.sequence
+        for epoch, sent in accounts.items():
+            header = Header(epoch, 1, self._clock.now_ns())
+            publisher.put(pack_account(sent), attachment=header.pack())
 
 
 class LiveNode:
@@ -108,6 +131,7 @@ class LiveNode:
         epoch: int,
         run_id: str = "",
         say: Callable[[str], None] = lambda text: None,  # noqa: ARG005
+        spool: Spool | None = None,
     ) -> None:
         self.run_id = run_id
         self._session = session
@@ -116,7 +140,9 @@ class LiveNode:
         self._clocks: dict[str, tuple[int, ClockOffset]] = {}
         self._clock = clock
         self._period_s = period_s
-        self._live = LivePublisher(session, clock, epoch)
+        self._live = LivePublisher(session, clock, epoch, spool)
+        if spool:
+            self._live.repeat(spool.left)
         self._inboxes: list[tuple[Inbox, Subscription[Any]]] = []
         self.keys_received: set[str] = set()
         self._run_states = self.subscribe(topics.RUN_STATE)

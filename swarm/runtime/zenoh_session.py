@@ -23,6 +23,7 @@ from swarm.runtime.endpoint import check_endpoint
 
 if TYPE_CHECKING:
     import zenoh
+    from zenoh.ext import AdvancedPublisher, AdvancedSubscriber
 
 ONE_THREAD = (
     "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
@@ -35,6 +36,10 @@ MOST_AT_ONCE = 4096
 LARGEST_MESSAGE_BYTES = 16 << 20
 """What a session takes in: thrice an exchange of 1000 robots in lockstep. Zenoh would put 1 GiB together
 before anybody could refuse it."""
+KEPT = 10_000
+"""Messages of a key that their sender keeps: five hours of a robot's moves, some megabytes."""
+HEARTBEAT_S = 0.5
+"""After a publisher's last message it says so often, for a while, what its number was."""
 WAIT_FOR_ROOM_S = 5.0
 """What must not be dropped waits so long for room, or as long as the lease; then Zenoh reconnects."""
 
@@ -65,10 +70,16 @@ class WireSample:
     attachment: bytes
 
 
+class Samples(Protocol):
+    """A subscriber of Zenoh's, of either kind."""
+
+    def try_recv(self) -> zenoh.Sample | None: ...
+
+
 class Inbox:
     """Samples of one subscription, polled by the main loop."""
 
-    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
+    def __init__(self, subscriber: Samples) -> None:
         self._subscriber = subscriber
 
     def poll(self) -> list[WireSample]:
@@ -102,7 +113,7 @@ class Put(Protocol):
 class Publisher:
     """Puts payloads under one key."""
 
-    def __init__(self, publisher: zenoh.Publisher) -> None:
+    def __init__(self, publisher: zenoh.Publisher | AdvancedPublisher) -> None:
         self.put: Put = publisher.put
         """Zenoh's own, without a call in between, which would show in the pace of a lockstep."""
 
@@ -117,12 +128,14 @@ class Session:
     def __init__(self, settings: SessionSettings, waiting: Callable[[], None] = lambda: None) -> None:
         os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
         import zenoh
+        import zenoh.ext
 
         zenoh.init_log_from_env_or("error")
         self._zenoh = zenoh
         self._tokens: list[zenoh.LivelinessToken] = []
         self._listening: list[zenoh.Subscriber[None]] = []
         self._answering: list[zenoh.Queryable[None]] = []
+        self._recovering: list[AdvancedSubscriber[zenoh.handlers.Handler[zenoh.Sample]]] = []
         try:
             self._session = in_background(partial(_opened, settings), waiting)
         except zenoh.ZError as error:
@@ -139,6 +152,8 @@ class Session:
         """Undeclare everything and leave; presence tokens vanish for the others."""
         atexit.unregister(self.close)
         if not self._session.is_closed():
+            while self._recovering:  # Left declared, they would keep the process alive.
+                self._recovering.pop().undeclare()  # type: ignore[no-untyped-call]
             self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str, delivery: Delivery) -> Publisher:
@@ -152,6 +167,36 @@ class Session:
                 priority=priority.DATA_LOW if delivery is Delivery.BULK else priority.DATA,
             )
         )
+
+    def keeping_publisher(self, key: str) -> Publisher:
+        """A publisher of what must not be lost: it keeps the newest, for a `recovering_inbox`."""
+        ext = self._zenoh.ext
+        return Publisher(
+            ext.declare_advanced_publisher(
+                self._session,
+                key,
+                congestion_control=self._zenoh.CongestionControl.BLOCK,
+                cache=ext.CacheConfig(max_samples=KEPT),
+                sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT_S),
+                publisher_detection=True,
+            )
+        )
+
+    def recovering_inbox(self, key: str) -> Inbox:
+        """Subscribe to a key expression, and ask for what was missed of who keeps it: sent before this began,
+        or while the link was down. A publisher's samples come in order.
+        """
+        ext = self._zenoh.ext
+        channel: zenoh.handlers.FifoChannel[zenoh.Sample] = self._zenoh.handlers.FifoChannel(QUEUE_DEPTH)
+        subscriber = ext.declare_advanced_subscriber(
+            self._session,
+            key,
+            channel,
+            history=ext.HistoryConfig(detect_late_publishers=True),
+            recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+        )
+        self._recovering.append(subscriber)
+        return Inbox(subscriber)
 
     def inbox(self, key: str, delivery: Delivery, *, keep_all: bool = False) -> Inbox:
         """Subscribe to a key expression.
