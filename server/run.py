@@ -14,6 +14,7 @@ from typing import Any
 
 from server.conductor.conductor import Conductor
 from server.conductor.earlier import earlier_progress
+from server.hubs.hub import Hub
 from server.processes.environment import Environment, TrialPlan
 from server.progress import RunProgress
 from server.recording.foxglove_views import Views
@@ -108,7 +109,7 @@ class Run:
             reporter = environment.reporter
             earlier = earlier_progress(logs)
             conductor = Conductor(self.experiment, identity, reporter, environment.carrier, earlier)
-            recorder = self._recorder(identity, file, latched)
+            recorder = self._recorder(environment.hub, identity, file, latched)
             health, views = Health(reporter), Views(self.experiment)
             played = Trial(environment, conductor, recorder, health, views, self.progress.show)
             try:
@@ -116,7 +117,7 @@ class Run:
             finally:
                 self.results[trial] = played.result()
 
-    def _recorder(self, identity: RunIdentity, file: Path, latched: LatchedState) -> TrialRecorder:
+    def _recorder(self, hub: Hub, identity: RunIdentity, file: Path, latched: LatchedState) -> TrialRecorder:
         """Goes on from what earlier servers recorded of the trial."""
         trial = identity.trial
         return TrialRecorder(
@@ -125,6 +126,7 @@ class Run:
             self.experiment.log,
             latched,
             self.directory.next_part(trial),
+            recovered=lambda: hub.recovered,
         )
 
     def _summary(self, done: Sequence[int], wall_s: float) -> dict[str, Any]:

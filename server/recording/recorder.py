@@ -145,6 +145,19 @@ class Recorder:
         self.flush()
         self._add_metadata(ending_records(state, reason, self.last if accounts is None else accounts))
 
+    def received(self) -> dict[Sender, int]:
+        """How many messages of each sender were written, and flushed."""
+        counts = self._writer.messages_by_channel()
+        return {
+            sender: counts.get(channel, 0)
+            for sender, channel in self._channels.items()
+            if channel is not None and sender[1]
+        }
+
+    def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
+        """Write a metadata record."""
+        self._writer.add_metadata(name, dict(values))
+
     def close(self) -> None:
         """Write the index and close the file; a second call does nothing."""
         if not self._file.closed:

@@ -21,7 +21,9 @@ from swarm.checkup.machine import free_bytes, lack_of_room
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import LogSettings
 from swarm.errors import RunFailedError, UserError, in_words
-from swarm.logs.ending import CONTINUED, Sender
+from swarm.logs.chain import CONTINUES, last_link
+from swarm.logs.ending import ACCOUNT, CONTINUED, Sender, account_record
+from swarm.logs.reader import LogError, LogReader
 from swarm.logs.recover import close_log
 from swarm.logs.trial_logs import closed_path, open_path
 from swarm.messages.topics import Delivery, topic_of
@@ -35,7 +37,10 @@ MORE_BYTES = 16 << 20
 
 
 class TrialRecorder:
-    """Records one trial from its part number `first_part` on; `path_of` says where each part goes."""
+    """Records one trial from its part number `first_part` on; `path_of` says where each part goes.
+
+    `recovered` tells how many messages of each sender came only after they had been lost on their way.
+    """
 
     def __init__(
         self,
@@ -45,6 +50,7 @@ class TrialRecorder:
         latched: LatchedState,
         first_part: int = 1,
         free: Callable[[Path], int] = free_bytes,
+        recovered: Callable[[], Mapping[Sender, int]] = dict,
     ) -> None:
         self._path_of = path_of
         self._about = about
@@ -52,6 +58,7 @@ class TrialRecorder:
         self._most_ns = round(settings.file_h * S_PER_H * NS_PER_S)
         self._latched = latched
         self._free = free
+        self._recovered = recovered
         self._part = first_part
         self._unflushed: list[Batch] = []
         """What a file that cannot be written any more would lack."""
@@ -121,7 +128,7 @@ class TrialRecorder:
         if self._recorder:
             self._latched.finished(self._recorder.last)
         sent = self._latched.last if accounts is None else accounts
-        self._try(lambda recorder: recorder.end(state, reason, sent))
+        self._try(lambda recorder: self._end(recorder, state, reason, sent))
 
     def close(self) -> None:
         """Write the index, and give the file its name; a second call does nothing."""
@@ -141,16 +148,25 @@ class TrialRecorder:
             self.waits_for = lack
 
     def _end_file(self, reason: str) -> None:
-        self._try(lambda recorder: recorder.end(CONTINUED, reason, {}))
+        self._try(lambda recorder: self._end(recorder, CONTINUED, reason, {}))
         self.close()
         self._part += 1
         self._is_due = False
+
+    def _end(self, recorder: Recorder, state: str, reason: str, sent: Mapping[Sender, int]) -> None:
+        """The ending, and the account of this file."""
+        recorder.end(state, reason, sent)
+        account = account_record(recorder.received(), recorder.last, self._before, self._recovered())
+        recorder.add_metadata(ACCOUNT, account)
 
     def _go_on(self, *, reserve: bool = True) -> None:
         """Begin the next file, if there is room for one, with what it has to hold."""
         place = self._path_of(self._part).parent
         lack = lack_of_room(place, self._free, MORE_BYTES) if reserve else ""
         try:
+            while self._abandoned and not lack:
+                close_log(self._abandoned[0], {"state": CONTINUED, "reason": "the disk took no more"})
+                self._abandoned.pop(0)
             self._recorder = None if lack else self._opened()
         except (OSError, RunFailedError, UserError) as error:
             lack = str(error)
@@ -159,8 +175,6 @@ class TrialRecorder:
             return
         if self._arena is not None:
             self.write_view(ARENA, self._arena, self._t_ns)
-        while self._abandoned:
-            close_log(self._abandoned.pop(0), {"state": CONTINUED, "reason": "the disk took no more"})
         self._try(self._write_unflushed)
 
     def _write_unflushed(self, recorder: Recorder) -> None:
@@ -168,10 +182,19 @@ class TrialRecorder:
             recorder.write(batch)
 
     def _opened(self) -> Recorder:
-        latched = self._latched.records() if self._part > 1 else {}
+        self._before = dict(self._latched.last)
+        latched = self._latched.records() | self._continues() if self._part > 1 else {}
         self._began_ns = self._t_ns
         path = open_path(self._path_of(self._part))
         return Recorder(path, {**self._about(self._part), **latched}, left_out=self.left_out)
+
+    def _continues(self) -> dict[str, dict[str, str]]:
+        """Which file this one goes on from, by its hash chain."""
+        before = self._path_of(self._part - 1)
+        try:
+            return {CONTINUES: {"log": before.name, "sha256": last_link(LogReader(before).read_metadata())}}
+        except LogError:
+            return {}
 
     def _try(self, work: Callable[[Recorder], None]) -> None:
         """Do something with the open file; if the disk refuses, the file stays as it was flushed last."""

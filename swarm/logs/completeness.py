@@ -7,7 +7,7 @@ on from others is asked for what comes after them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,7 +18,7 @@ import polars as pl
 from swarm.logs.ending import COMPLETE, Sender
 from swarm.logs.identity import LogIdentity
 from swarm.logs.reader import S_PER_NS, LogChannel, Part
-from swarm.messages.topics import topic_of
+from swarm.messages.topics import Delivery, topic_of
 
 HEALTH_SCHEMA: dict[str, Any] = {
     "log": pl.String,
@@ -43,6 +43,26 @@ HEALTH_SCHEMA: dict[str, Any] = {
     "rejected": pl.Int64,
     "readable": pl.Boolean,
 }
+
+
+@dataclass(frozen=True)
+class Hole:
+    """Messages of a sender that are missing: numbers `first` to `last`."""
+
+    key: str
+    epoch: int
+    first: int
+    last: int
+    after_t_ns: int | None
+    """When the message before was sent; None if there is none."""
+    before_t_ns: int | None
+    """When the next one was sent; None if there is none."""
+
+    def __str__(self) -> str:
+        after = "the beginning" if self.after_t_ns is None else f"{self.after_t_ns * S_PER_NS:.3f} s"
+        before = "the end" if self.before_t_ns is None else f"{self.before_t_ns * S_PER_NS:.3f} s"
+        numbers = str(self.first) if self.first == self.last else f"{self.first} to {self.last}"
+        return f"{self.key}: {numbers}, between {after} and {before}"
 
 
 @dataclass
@@ -79,6 +99,27 @@ class HealthTable:
         return pl.DataFrame(
             [{name: row[name] for name in HEALTH_SCHEMA} for row in found], schema=HEALTH_SCHEMA
         )
+
+    def holes(self) -> list[Hole]:
+        """Where messages are missing that must not be lost."""
+        return [
+            hole
+            for channel in sorted(self._all_channels(), key=lambda channel: (channel.key, channel.epoch))
+            if (topic := topic_of(channel.key)) and topic[0].delivery is Delivery.EVERY
+            for hole in self._holes_of(channel)
+        ]
+
+    def _holes_of(self, channel: LogChannel) -> Iterator[Hole]:
+        sender = (channel.key, channel.epoch)
+        numbers = np.concatenate(self._sequences.get(channel, [np.empty(0, dtype=np.uint32)]))
+        once, places = np.unique(numbers, return_index=True)
+        t_ns = np.concatenate(self._times.get(channel, [np.empty(0, dtype=np.int64)]))[places]
+        edge = max(self.identity.before.get(sender, 0), self._sent.get(sender, 0), *once[-1:].tolist(), 0) + 1
+        known = [self.identity.before.get(sender, 0), *once.tolist(), edge]
+        times: list[int | None] = [None, *t_ns.tolist(), None]
+        for place in np.flatnonzero(np.diff(known) > 1).tolist():
+            first, last = known[place] + 1, known[place + 1] - 1
+            yield Hole(*sender, first, last, times[place], times[place + 1])
 
     def _all_channels(self) -> list[LogChannel]:
         """Those seen, and those of which a sender says that they should have been."""

@@ -11,10 +11,11 @@ checked by itself.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-END, SENT, RECOVERED, BEFORE = "end", "sent", "recovered", "before"
+END, SENT, RECOVERED, BEFORE, ACCOUNT = "end", "sent", "recovered", "before", "account"
 COMPLETE = "complete"
 CONTINUED = "continued"
 """Of a log that was closed before its trial was over: the next one goes on."""
@@ -85,6 +86,27 @@ def numbers_record(numbers: Mapping[Sender, int]) -> dict[str, str]:
 def ending_records(state: str, reason: str, sent: Mapping[Sender, int]) -> dict[str, dict[str, str]]:
     """The metadata records of an ending."""
     return {END: {"state": state, "reason": reason}, SENT: numbers_record(sent)}
+
+
+def account_record(
+    received: Mapping[Sender, int],
+    last: Mapping[Sender, int],
+    before: Mapping[Sender, int],
+    recovered: Mapping[Sender, int],
+) -> dict[str, str]:
+    """The metadata record `account` of a log: for each sender how many of its messages are in it, how many of
+    those this server has had to ask for so far, and how many are lost between the first and the last.
+    """
+    return {
+        f"{sender[0]} {sender[1]}": json.dumps(
+            {
+                "received": received.get(sender, 0),
+                "recovered": recovered.get(sender, 0),
+                "lost": max(0, number - before.get(sender, 0) - received.get(sender, 0)),
+            }
+        )
+        for sender, number in sorted(last.items())
+    }
 
 
 def _is_number(text: str) -> bool:

@@ -13,6 +13,7 @@ from mcap.records import Attachment, Channel, Message, Metadata, Schema
 
 from swarm.errors import RunFailedError
 from swarm.files import new_file
+from swarm.logs.chain import CHAIN
 from swarm.logs.ending import END, KILLED, RECOVERED
 from swarm.logs.mcap_chunks import places
 from swarm.logs.mcap_records import BROKEN, BrokenRecordError, FramingError, Record, decoded
@@ -161,6 +162,8 @@ class _Copy:
             elif isinstance(one, Channel) and self._definitions.add(one):
                 about = dict(one.metadata)
                 writer.add_channel(one.id, one.topic, one.message_encoding, one.schema_id, about)
+            elif isinstance(one, Metadata) and one.name == CHAIN:
+                continue  # The new log has other chunks, and a chain of its own.
             elif isinstance(one, Metadata) and one not in self._metadata.setdefault(one.name, []):
                 self._metadata[one.name].append(one)
                 writer.add_metadata(one.name, dict(one.metadata))

@@ -49,6 +49,7 @@ def test_payload_numbers_and_times_are_those_of_the_wire(tmp_path: Path) -> None
         reader = make_reader(file)
         found = list(reader.iter_messages())
         about = {record.name: record.metadata for record in reader.iter_metadata()}
+    assert about.pop("chain")["chunks"] == "1"
     assert about == ABOUT
     (_, channel, pose), (_, _, move) = sorted(found, key=lambda each: each[1].topic, reverse=True)
     assert channel.metadata == {"epoch": "1", "robot": "a", "delivery": "newest"}
