@@ -3,6 +3,9 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
+# Most tests wait for processes that they started: four at a time keep two cores busy. A file is one worker's.
+WORKERS ?= -n 4 --dist loadfile
+
 DEMO ?= runs/demo-$(shell date +%Y%m%d-%H%M%S)
 
 .PHONY: setup demo test test-faults test-all check format coverage site messages docs wheel clean
@@ -31,7 +34,7 @@ format: setup
 	$(BIN)/ruff format .
 
 test: setup check
-	$(BIN)/pytest -m "not long and not faults"
+	$(BIN)/pytest $(WORKERS) -m "not long and not faults"
 
 # Everything that is injected from outside: signals at every instant, settings at the ends of their ranges.
 test-faults: setup

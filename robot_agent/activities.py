@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
-from robot_agent.drivers.kinematics import WheelSpeeds
+from robot_agent.drivers.kinematics import STOPPED, WheelSpeeds
 from robot_agent.inbox import AgentInbox
 from robot_agent.navigation.motion import Motion
 from robot_agent.policies.policy import Policy
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from robot_agent.imitation.visit import BeginVisit, Visit
 
 
-@dataclass(frozen=True, slots=True)
-class Seen:
+class Seen(NamedTuple):
     """What one tick shows: the time, the robot's own pose, and how old the fix under it is."""
 
     t_ns: int
@@ -31,8 +30,7 @@ class Seen:
     pose_age_s: float
 
 
-@dataclass(frozen=True, slots=True)
-class Acted:
+class Acted(NamedTuple):
     """What an activity makes of a tick: wheel speeds, what follows it, and the move that has just ended."""
 
     speeds: WheelSpeeds
@@ -76,6 +74,8 @@ class Activity:
     """The cell that the robot stands in or is leaving."""
     name: ClassVar[str]
     """As the status message has it."""
+    under_way: ClassVar[bool] = False
+    """Whether a pause waits for its end."""
 
     def enter(self) -> None:
         """Called once, when the activity begins."""
@@ -91,6 +91,10 @@ class Activity:
     def stopped(self) -> Activity:
         """What follows when the run does not go on: a move under way is given up."""
         return Waiting(self.task, self.state)
+
+    def emergency(self) -> Activity:
+        """What follows when an emergency stop is heard: whatever is under way is given up."""
+        return EmergencyStop(self.task, self.stopped().state)
 
     def displaced(self) -> Activity:
         """What follows when somebody carried the robot away: a move under way is given up."""
@@ -124,7 +128,7 @@ class Waiting(BetweenMoves):
         self.task.motion.stop()
 
     def go_on(self, seen: Seen) -> Activity:
-        if self.task.is_at_home(seen.pose) and self.task.inbox.running(seen.t_ns):
+        if self.task.is_at_home(seen.pose) and self.task.inbox.running:
             return Returning(self.task, self._cell_to_go_on_from(seen.pose))
         return self
 
@@ -144,6 +148,7 @@ class Returning(BetweenMoves):
     """Driving to the start cell, or back to the cell that it stood in."""
 
     name = "returning"
+    under_way = True
 
     def enter(self) -> None:
         self.task.drive_to(self.state)
@@ -184,7 +189,7 @@ class Deciding(BetweenMoves):
     name = "deciding"
 
     def go_on(self, seen: Seen) -> Activity:
-        if not self.task.inbox.running(seen.t_ns):
+        if not self.task.inbox.running:
             return self
         action = self.task.policy.choose(self.state)
         entered = self.task.compartment.grid.neighbour(self.state, action)
@@ -197,6 +202,7 @@ class Deciding(BetweenMoves):
 class MoveUnderWay(Activity, ABC):
     """A choice under way, from the decision at `began_ns` until there is something to learn from it."""
 
+    under_way = True
     blocked: ClassVar[bool]
     action: int
     next_state: int
@@ -255,6 +261,7 @@ class Visiting(Activity):
     """Watching another robot, or being carried there and back."""
 
     name = "visiting"
+    under_way = True
     visit: Visit
 
     def enter(self) -> None:
@@ -271,6 +278,34 @@ class Visiting(Activity):
     def displaced(self) -> Activity:
         """Being carried is part of a visit."""
         self.visit.displaced()
+        return self
+
+
+class EmergencyStop(Activity):
+    """Standing until somebody releases the emergency; wherever the robot is then, it goes on from there."""
+
+    name = "estopped"
+
+    def enter(self) -> None:
+        self.task.motion.stop()
+
+    def decide(self, seen: Seen) -> Activity:  # noqa: ARG002
+        """Asked only once the emergency is released."""
+        return Waiting(self.task, self.state, lost=True)
+
+    def act(self, seen: Seen) -> Acted:  # noqa: ARG002
+        """At once: no braking is planned."""
+        return Acted(STOPPED, self)
+
+    def emergency(self) -> Activity:
+        return self
+
+    def stopped(self) -> Activity:
+        """Also a trial that is over leaves it in force."""
+        return self
+
+    def displaced(self) -> Activity:
+        """People carry robots in emergencies."""
         return self
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from robot_agent.activities import Activity, Finished, Seen, Task, Visiting, Waiting
+from robot_agent.activities import Activity, EmergencyStop, Finished, Seen, Task, Visiting, Waiting
 from robot_agent.checkpoint import Checkpoint, Saved
 from robot_agent.drivers.health import TellsHealth
 from robot_agent.drivers.interfaces import Body
-from robot_agent.drivers.kinematics import WheelSpeeds
+from robot_agent.drivers.kinematics import STOPPED, WheelSpeeds
 from robot_agent.navigation.pose_estimator import PoseEstimator
 from robot_agent.reports import Reporter
 from swarm.errors import UserError, in_words
@@ -25,6 +25,7 @@ class Agent:
         self._reporter = reporter
         self._checkpoint: Checkpoint | None = None
         self._saves = True
+        self._told_pause = False
 
     def step(self, t_ns: int) -> None:
         """One tick."""
@@ -46,7 +47,9 @@ class Agent:
 
     def decide(self, seen: Seen) -> None:
         """Whether the robot may go on, and with what."""
-        if self._task.policy.finished:
+        if self._task.inbox.latch.engaged:
+            self._stop_at_once(self._task.inbox.latch.reason)
+        elif self._task.policy.finished:
             self._become(Finished(self._task, self.activity.state))
         elif self._task.inbox.stopped:
             self._become(self.activity.stopped())
@@ -54,9 +57,9 @@ class Agent:
             self._become(self.activity.decide(seen))
 
     def act(self, seen: Seen) -> tuple[WheelSpeeds, Transition | None]:
-        """Drive; what was really sent comes back, and the move that has just ended."""
+        """Drive, but not out of touch; what was really sent comes back, and the move that has just ended."""
         acted = self.activity.act(seen)
-        sent = self._body.drive(acted.speeds, seen.t_ns)
+        sent = self._body.drive(STOPPED if self._task.inbox.cut_off else acted.speeds, seen.t_ns)
         self._become(acted.then)
         return sent, acted.made
 
@@ -66,9 +69,18 @@ class Agent:
             self._task.policy.learn(made)
             self._save(made.next_state)
 
+    def keep_emergency(self) -> None:
+        """Have an emergency stop that is in force outlive this process."""
+        try:
+            self._task.inbox.latch.keep()
+        except OSError as error:
+            text = f"the emergency stop would not outlive this process: {in_words(error)}"
+            self._reporter.warning("estop", text)
+
     def report(self, seen: Seen, sent: WheelSpeeds) -> None:
         """The command as sent at every tick, the status once a second."""
         policy = self._task.policy
+        self._tell_pause()
         self._reporter.command(sent, seen.pose)
         self._reporter.status(
             seen.t_ns,
@@ -78,6 +90,8 @@ class Agent:
             seen.pose_age_s,
             self._task.inbox.bad,
             self._tells_health.health if self._tells_health else None,
+            paused=self._task.inbox.paused,
+            estopped=self._task.inbox.latch.engaged,
         )
 
     def resume_from(self, checkpoint: Checkpoint) -> str:
@@ -107,6 +121,21 @@ class Agent:
         """Motors off, for good."""
         self._task.motion.stop()
         self._body.close()
+
+    def _stop_at_once(self, reason: str) -> None:
+        if not isinstance(self.activity, EmergencyStop):
+            self._reporter.warning("estop", f"{reason}: the wheels stand until it is released")
+            self._become(self.activity.emergency())
+
+    def _tell_pause(self) -> None:
+        """Once it stands, and once it may go on: what became of the operator's order."""
+        held = self._task.inbox.held
+        if held and not self._told_pause and not self.activity.under_way:
+            self._told_pause = True
+            self._reporter.info("paused", f"stands: {held}")
+        elif not held and self._told_pause:
+            self._told_pause = False
+            self._reporter.info("resumed", "may go on")
 
     def _become(self, activity: Activity) -> None:
         if activity is not self.activity:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robot_agent.activities import Task
@@ -21,6 +22,7 @@ from robot_agent.policies.learner import LearningPolicy
 from robot_agent.policies.policy import Policy
 from robot_agent.reports import Reporter
 from swarm.config.experiment import Experiment, RobotSettings, Role
+from swarm.runtime.emergency_latch import EmergencyLatch
 from swarm.runtime.node import Node
 
 if TYPE_CHECKING:
@@ -35,6 +37,12 @@ class Place:
     """Of robots that are somewhere else than the experiment says: emulated ones."""
     speed: float = 1.0
     lockstep: bool = False
+    state: Path | None = None
+    """Where an emergency stop is kept over a restart."""
+
+    def latch(self, robot: str) -> EmergencyLatch:
+        """What a robot keeps of an emergency stop."""
+        return EmergencyLatch(self.state / f"{robot}.estop" if self.state else None)
 
 
 class Assembly:
@@ -57,7 +65,7 @@ class Assembly:
             settings.compartment(robot),
             policy,
             Motion(MotionSettings(period_s=settings.simulation.tick_s), parts.geometry),
-            AgentInbox(self._node, name),
+            AgentInbox(self._node, name, settings.run, self._place.latch(name)),
             settings.learning.blocked_move_s,
             settings.learning.rest_s,
             _visits(parts, driver, policy, estimator.pose, reporter),

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 
 from robot_agent.drivers.sim.rendering.colours import colour
@@ -17,6 +18,7 @@ from swarm.errors import UserError, nearest
 from swarm.plugins import DRIVERS, plugins
 
 SIMULATED = "sim"
+VISION = "pip install 'swarm-runtime[vision]', or on 32-bit ARM Debian's python3-opencv"
 
 
 def checks(experiment: Experiment) -> Iterator[Finding]:
@@ -46,6 +48,9 @@ def _camera(experiment: Experiment, robots: tuple[RobotSettings, ...]) -> Iterat
     camera = experiment.camera
     if any(robot.driver == SIMULATED for robot in robots):
         yield _tried("camera's light", camera.conditions, conditions, ("camera", "conditions"))
+    if find_spec("cv2") is None:
+        yield from _blind(experiment, robots)
+        return
     if camera.calibration:
         from robot_agent.vision.camera_model import load_calibration
 
@@ -55,6 +60,14 @@ def _camera(experiment: Experiment, robots: tuple[RobotSettings, ...]) -> Iterat
 
         load = partial(load_colour_table, gamma=1.0)  # whether it can be read does not depend on it
         yield _tried_file("camera's colours", camera.colours, load, "colours")
+
+
+def _blind(experiment: Experiment, robots: tuple[RobotSettings, ...]) -> Iterator[Finding]:
+    """Without OpenCV nobody can watch; whoever does not needs none."""
+    for robot in robots:
+        if robot.watches:
+            key = ("robot", experiment.robot.index(robot), "watches")
+            yield bad(f"sight of {robot.id}", f"to watch {robot.watches!r} it needs cv2", VISION, key)
 
 
 def _tried_file(about: str, file: str, load: Callable[[Path], object], key: str) -> Finding:

@@ -1,42 +1,66 @@
-"""All that a robot hears: its own pose, its own orders, the run's state."""
+"""All that a robot hears: its own pose, its own orders, the run's state, and an emergency stop."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from swarm.clock import NS_PER_S
+from swarm.config.experiment import RunSettings, WithoutServer
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.runtime.emergency_latch import EmergencyLatch, by
 from swarm.runtime.node import Node
 
-CONDUCTOR_SILENT_S = 5.0
-"""Chosen: five of the run states that come once a second, so that a lost message or two stop nobody."""
+HEARS_WITHIN_S = 0.3
+"""With a control period of 0.1 s and the way to the wheels, these stand within half a second of an emergency
+stop that gets lost. Poses come ten times a second: two of them may be late."""
 
 
 class AgentInbox:
-    """The three subscriptions of one robot.
+    """The four subscriptions of one robot.
 
-    A robot goes on only while it hears the run's state: after 5 s without it finishes its move and waits.
+    A robot goes on only while it hears the run's state; without it, it does what the run's settings say.
+    An emergency stop stays in force in `latch`, whatever else is heard, until the server releases it.
     """
 
-    def __init__(self, node: Node, robot: str) -> None:
+    def __init__(self, node: Node, robot: str, settings: RunSettings, latch: EmergencyLatch) -> None:
         self._node = node
         self._robot = robot
         self._poses = node.subscribe(topics.POSE, robot)
         self._orders = node.subscribe(topics.ORDER, robot)
         self._run_states = node.subscribe(topics.RUN_STATE)
+        self._estops = node.subscribe(topics.ESTOP)
+        self.latch = latch
+        self.paused = False
+        """Whether this robot is to stand although the others go on."""
         self._phase = pb.RunState.PHASE_UNSPECIFIED
-        self._heard_ns = 0
+        self._silent_ns = round(settings.without_server_s * NS_PER_S)
+        self._stops_in_silence = settings.without_server is WithoutServer.STOP
+        self._heard_ns = self._t_ns = 0
         self._order = pb.Order(kind=pb.Order.RUN)
 
     def poll(self, t_ns: int) -> None:
-        """Take in orders and the run's state."""
-        for order in self._orders.take():
-            self._order = order.message
+        """Take in the run's state and orders; what releases an emergency comes after all that declares it."""
+        self._t_ns = t_ns
+        for stop in self._estops.take():
+            self.latch.engage(f"emergency stop by {by(stop.message.operator, stop.message.reason)}")
         for state in self._run_states.take():
             self._phase = state.message.phase
             self._heard_ns = t_ns
+            if self._phase == pb.RunState.ESTOPPED:
+                self.latch.engage("emergency stop, says the server")
+        for order in self._orders.take():
+            self._obey(order.message)
+
+    def _obey(self, order: pb.Order) -> None:
+        """What a robot is to do stays as it was while the robot is paused."""
+        if order.kind == pb.Order.RELEASE:
+            self.latch.release()
+        elif order.kind in (pb.Order.PAUSE, pb.Order.RESUME):
+            self.paused = order.kind == pb.Order.PAUSE
+        else:
+            self._order = order
 
     def fixes(self) -> Iterator[tuple[Pose, int]]:
         """The tracker's poses since the last call, each with the time it was captured, on this clock."""
@@ -44,10 +68,27 @@ class AgentInbox:
             pose, offset_ns = received.message, self._node.offset_ns(topics.POSE, self._robot)
             yield Pose(pose.x_m, pose.y_m, pose.theta_rad), pose.captured_t_ns + offset_ns
 
-    def running(self, t_ns: int) -> bool:
+    @property
+    def running(self) -> bool:
         """Whether the robot may begin a move now."""
-        heard = t_ns - self._heard_ns <= CONDUCTOR_SILENT_S * NS_PER_S
-        return heard and self._phase == pb.RunState.RUNNING and self._order.kind == pb.Order.RUN
+        goes_on = self._phase == pb.RunState.RUNNING and not self.paused
+        return self._hears_server and goes_on and self._order.kind == pb.Order.RUN
+
+    @property
+    def _hears_server(self) -> bool:
+        return self._t_ns - self._heard_ns <= self._silent_ns
+
+    @property
+    def cut_off(self) -> bool:
+        """Whether an emergency stop may be on its way that has not been heard: then the wheels stand."""
+        return self._node.lag_s() > HEARS_WITHIN_S
+
+    @property
+    def held(self) -> str:
+        """Why the robot is to stand although its trial goes on; empty if it is not."""
+        if self._phase == pb.RunState.PAUSED:
+            return "the run is paused"
+        return "paused by itself" if self.paused else ""
 
     @property
     def visit_order(self) -> pb.Order | None:
@@ -56,10 +97,14 @@ class AgentInbox:
 
     @property
     def stopped(self) -> bool:
-        """Whether the trial is over for this robot."""
+        """Whether whatever is under way is given up: the trial is over, or its server is lost and the run's
+        settings want that.
+        """
+        if self._stops_in_silence and not self._hears_server:
+            return True
         return self._order.kind == pb.Order.STOP or self._phase == pb.RunState.ENDED
 
     @property
     def bad(self) -> int:
         """Messages refused so far."""
-        return self._poses.bad + self._orders.bad + self._run_states.bad
+        return self._poses.bad + self._orders.bad + self._run_states.bad + self._estops.bad

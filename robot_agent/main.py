@@ -18,6 +18,7 @@ from swarm.checkup.machine import writable
 from swarm.config.arguments import place
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, guarded, nearest
+from swarm.extras import naming_extras
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
@@ -48,6 +49,7 @@ TOOLS = {
 """The first words of the command line, and MODULE:FUNCTION of the tool, whose parser is FUNCTION_parser."""
 
 
+@naming_extras()
 def _called(words: list[str]) -> None:
     """A tool if the first words name one, and else a robot; only what is called is loaded."""
     for name, tool_place in TOOLS.items():
@@ -63,14 +65,16 @@ def _called(words: list[str]) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Join the swarm and step the robots until the run ends or the process is told to leave."""
     experiment = load_experiment(arguments)
+    identity = RunIdentity.of(experiment, arguments.trial)
+    if arguments.calibration:
+        experiment = experiment.seen_by(arguments.calibration)
     names = _names(arguments.robot, experiment)
     _check(arguments, experiment, names)
     leave_on_signals()
     if arguments.supervised:
         leave_with_parent()
-    identity = RunIdentity.of(experiment, arguments.trial)
     with joined(arguments, "robot", names, experiment.simulation.tick_s, identity) as node:
-        place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep)
+        place = Place(addresses(arguments.address), arguments.speed, arguments.lockstep, arguments.state)
         assembly = Assembly(experiment, node, arguments.trial, place)
         agents = [assembly.agent(name) for name in names]
         if arguments.state:
@@ -99,8 +103,11 @@ def _go_on(agent: Agent, name: str, arguments: argparse.Namespace, run_id: str, 
 
 
 def _step(agents: list[Agent], t_ns: int) -> None:
+    """All wheels stand before the disk is waited for."""
     for agent in agents:
         agent.step(t_ns)
+    for agent in agents:
+        agent.keep_emergency()
 
 
 def _write_keys(file: Path, keys_received: set[str]) -> None:
@@ -137,6 +144,12 @@ def _parser() -> OneLineParser:
     add_common_arguments(parser)
     parser.add_argument("--robot", default="", metavar="ID[,ID...]", help="which robot this is")
     add_address_argument(parser)
+    parser.add_argument(
+        "--calibration",
+        type=place,
+        metavar="FILE",
+        help="this board's camera, in place of the experiment's calibration",
+    )
     parser.add_argument(
         "--state",
         type=place,

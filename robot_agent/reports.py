@@ -54,6 +54,9 @@ class Reporter:
         pose_age_s: float,
         bad_messages: int,
         health: BodyHealth | None = None,
+        *,
+        paused: bool = False,
+        estopped: bool = False,
     ) -> None:
         """Once a second; a pose that never came counts as 100,000 s old. Real robots tell how they do."""
         if t_ns < self._status_due_ns:
@@ -65,6 +68,8 @@ class Reporter:
             tracks=tracks,
             pose_age_s=min(pose_age_s, LONGEST_AGE_S),
             bad_messages=bad_messages,
+            paused=paused,
+            estopped=estopped,
         )
         if health:
             _tell_health(message, health)

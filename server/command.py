@@ -13,11 +13,18 @@ from pathlib import Path
 from rich.console import Console
 
 from server.interrupted_run import InterruptedRun
-from server.processes.environment import Environment, laboratory, require_emulation, simulated
+from server.processes.environment import (
+    Environment,
+    laboratory,
+    require_emulation,
+    require_tracker,
+    simulated,
+)
 from server.progress import RunProgress, print_summary
 from server.run import Run, Simulation
 from server.run_directory import RunDirectory
 from server.trial import TrialResult
+from swarm.access.zenoh_rules import limits
 from swarm.checkup.checkup import experiment_findings, findings
 from swarm.checkup.finding import Level, require_good
 from swarm.checkup.machine import room, writable
@@ -25,8 +32,9 @@ from swarm.cli.output import print_json
 from swarm.config import arguments
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
-from swarm.runtime.process import OneLineParser
-from swarm.runtime.zenoh_session import Session, SessionSettings
+from swarm.runtime.process import OneLineParser, add_protection_arguments, session_settings
+from swarm.runtime.zenoh_session import Session
+from swarm.services.notification import ServiceManager
 from swarm.signals import leave_on_signals
 
 RUN_ID_BYTES = 6
@@ -83,10 +91,13 @@ def _environment(
     if plan.simulation:
         how = plan.simulation
         return partial(simulated, plan.experiment, how.speed, progress.warn, emulate=how.emulate)
-    settings = SessionSettings(asked.listen, hub=True, config=asked.zenoh_config)
+    robots = [robot.id for robot in plan.experiment.robot]
+    settings = session_settings(asked, asked.listen, hub=True, limits=limits(robots))
     session = open_session.enter_context(Session(settings))
+    manager = ServiceManager.of_environment()
+    manager.ready()
     _warn_of_bad(plan.experiment, progress)
-    return partial(laboratory, plan.experiment, session, progress.warn)
+    return partial(laboratory, plan.experiment, session, progress.warn, manager.going_on)
 
 
 def _begun(asked: argparse.Namespace) -> Plan:
@@ -115,6 +126,7 @@ def _check(asked: argparse.Namespace, experiment: Experiment) -> None:
     else:
         require_good(asked.experiment, findings(experiment, asked.out))
         require_emulation(experiment, asked.speed, emulate=asked.emulate)
+        require_tracker(experiment, asked.speed)
 
 
 def _refuse_speed(asked: argparse.Namespace) -> None:
@@ -182,8 +194,8 @@ def _parser() -> OneLineParser:
     real = parser.add_argument_group("laboratory")
     real.add_argument(
         "--listen",
-        metavar="tcp/HOST:PORT",
-        help="wait here for the robots' agents and the tracker bridge, for instance tcp/0.0.0.0:7447",
+        metavar="tls/HOST:PORT",
+        help="wait here for the robots' agents and the tracker bridge, for instance tls/0.0.0.0:7447",
     )
     real.add_argument(
         "--trial",
@@ -191,7 +203,5 @@ def _parser() -> OneLineParser:
         metavar="N",
         help="a laboratory runs one trial at a time, from 0; the agents are started with the same number",
     )
-    real.add_argument(
-        "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"
-    )
+    add_protection_arguments(parser)
     return parser

@@ -6,6 +6,7 @@ import socket
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from functools import partial
@@ -14,8 +15,10 @@ from typing import Any
 
 from server.conductor.conductor import Conductor
 from server.conductor.earlier import earlier_progress
-from server.hubs.hub import Hub
-from server.processes.environment import Environment, TrialPlan
+from server.conductor.run_control import RunControl
+from server.control.desk import Desk
+from server.control.status_board import StatusBoard
+from server.processes.environment import Environment, TrialEnvironment, TrialPlan
 from server.progress import RunProgress
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
@@ -27,6 +30,7 @@ from server.run_directory import MANIFEST, RunDirectory
 from server.trial import Trial, TrialResult
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, in_words
+from swarm.runtime.emergency_latch import EmergencyLatch
 from swarm.runtime.identity import RunIdentity
 
 
@@ -73,7 +77,11 @@ class Run:
                 self.progress.begin(trial)
                 self._trial(trial, copy)
                 self._write_manifest("running")
-            state = "complete"
+                if self.results[trial].stopped:
+                    state = "stopped"
+                    break
+            else:
+                state = "complete"
         finally:
             self._write_manifest(state)
             summary = self._summary(to_do, time.monotonic() - began)
@@ -106,28 +114,43 @@ class Run:
         latched.take_up(logs)
         plan = TrialPlan(identity, file, self.directory.output(trial), latched.last)
         with self.environment(plan) as environment:
-            reporter = environment.reporter
-            earlier = earlier_progress(logs)
-            conductor = Conductor(self.experiment, identity, reporter, environment.carrier, earlier)
-            recorder = self._recorder(environment.hub, identity, file, latched)
-            health, views = Health(reporter), Views(self.experiment)
-            played = Trial(environment, conductor, recorder, health, views, self.progress.show)
+            played = self._assembled(environment, identity, file, latched)
             try:
-                played.run()
+                with self._reached(environment):
+                    played.run()
             finally:
                 self.results[trial] = played.result()
 
-    def _recorder(self, hub: Hub, identity: RunIdentity, file: Path, latched: LatchedState) -> TrialRecorder:
-        """Goes on from what earlier servers recorded of the trial."""
-        trial = identity.trial
-        return TrialRecorder(
+    def _assembled(
+        self, environment: TrialEnvironment, identity: RunIdentity, file: Path, latched: LatchedState
+    ) -> Trial:
+        """A trial, put together from its parts; it goes on from what earlier servers recorded of it."""
+        experiment, reporter, prompts = self.experiment, environment.reporter, environment.prompts
+        trial, hub = identity.trial, environment.hub
+        board = StatusBoard(experiment, identity, prompts, lambda: hub.missing)
+        latch = EmergencyLatch(self.directory.emergency if environment.session else None)
+        robots = [robot.id for robot in experiment.robot]
+        control = RunControl(robots, reporter, latch, prompts, board.pose_of)
+        carrier, earlier = environment.carrier, earlier_progress(self.directory.logs(trial))
+        conductor = Conductor(experiment, identity, reporter, carrier, control, earlier)
+        desk = None
+        if environment.session:
+            desk = Desk(environment.session, control, board, prompts, conductor, reporter)
+        recorder = TrialRecorder(
             partial(self.directory.log, trial),
-            partial(metadata, self.experiment, file, identity, self.versions),
-            self.experiment.log,
+            partial(metadata, experiment, file, identity, self.versions),
+            experiment.log,
             latched,
             self.directory.next_part(trial),
             recovered=lambda: hub.recovered,
         )
+        health, views = Health(reporter), Views(experiment)
+        return Trial(environment, conductor, recorder, health, views, self.progress.show, desk)
+
+    def _reached(self, environment: TrialEnvironment) -> AbstractContextManager[None]:
+        """Where people find a run that they can steer."""
+        session = environment.session
+        return self.directory.reached_at(session.endpoint) if session else nullcontext()
 
     def _summary(self, done: Sequence[int], wall_s: float) -> dict[str, Any]:
         """Of the run; its pace is that of the trials that this server has done."""

@@ -13,7 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from swarm.control.reaching import ENDPOINT
 from swarm.errors import NO_ROOM, UserError
+from swarm.files import new_folder
 from swarm.logs.recover import close_log
 from swarm.logs.trial_logs import OPEN_SUFFIX
 
@@ -37,16 +39,7 @@ class RunDirectory:
     def create(cls, path: Path | None, name: str) -> RunDirectory:
         """A new directory; without a path the first free runs/NAME-001, -002 and so on."""
         chosen = path or _free(Path("runs"), name)
-        try:
-            chosen.parent.mkdir(parents=True, exist_ok=True)
-            chosen.mkdir()
-        except FileExistsError as error:
-            raise UserError(
-                f"{chosen}: exists already; nothing is overwritten, choose another --out"
-            ) from error
-        except OSError as error:
-            raise UserError(f"{chosen}: cannot be made ({error.strerror}); choose another --out") from error
-        return cls(chosen)
+        return cls(new_folder(chosen))
 
     @contextmanager
     def held(self) -> Iterator[None]:
@@ -99,6 +92,21 @@ class RunDirectory:
     def output(self, trial: int) -> Path:
         """Where the processes of a trial print to."""
         return self.path / "output" / trial_name(trial)
+
+    @property
+    def emergency(self) -> Path:
+        """There while an emergency stop is in force."""
+        return self.path / "estop"
+
+    @contextmanager
+    def reached_at(self, endpoint: str) -> Iterator[None]:
+        """Say where the server listens, for as long as it does."""
+        file = self.path / ENDPOINT
+        file.write_text(f"{endpoint}\n", encoding="utf-8")
+        try:
+            yield
+        finally:
+            file.unlink(missing_ok=True)
 
     def reserve(self) -> None:
         """Take room now for what is written once there is none: how the run ended."""

@@ -7,11 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from server.conductor.conductor import Conductor
+from server.control.desk import Desk
 from server.processes.environment import TrialEnvironment
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
 from server.recording.trial_recorder import TrialRecorder
 from swarm.clock import unix_clock
+from swarm.errors import RunFailedError
 from swarm.logs.ending import COMPLETE
 from swarm.messages import swarm_pb2 as pb
 
@@ -36,6 +38,8 @@ class TrialResult:
     """By reason, keys with the number of their messages that were not recorded."""
     disk_error: str
     slowest_keys: dict[str, float]
+    stopped: str
+    """Who ended the trial before its time, and why; empty if nobody did."""
 
 
 class Trial:
@@ -49,6 +53,7 @@ class Trial:
         health: Health,
         views: Views,
         show: Callable[[Conductor, float], None],
+        desk: Desk | None = None,
     ) -> None:
         self._hub = environment.hub
         self._environment = environment
@@ -57,23 +62,25 @@ class Trial:
         self._health = health
         self._views = views
         self._show = show
+        self._desk = desk
         self._complete = False
         self._batches = 0
         self._began_ns: int | None = None
         self._t_ns = 0
 
     def run(self) -> None:
-        """Until every learner has made its moves. The log is closed whatever happens."""
+        """Until every learner has made its moves, or an operator stops it. The log is closed in any case."""
         try:
-            self._hub.start()
+            self._hub.start(self._wait)
             self._hub.advance()
             while not self._conductor.ended:
                 self._step()
             for _ in range(BATCHES_AFTER_THE_END):
                 self._step()
             self._recorder.write(self._hub.finish())
-            self._recorder.end(COMPLETE, "", self._hub.accounts())
-            self._complete = True
+            stopped = self._conductor.stopped
+            self._recorder.end("stopped" if stopped else COMPLETE, stopped, self._hub.accounts())
+            self._complete = not stopped
         except BaseException as error:
             self._note_end(error)
             raise
@@ -91,12 +98,15 @@ class Trial:
             left_out={reason: dict(keys) for reason, keys in vars(self._recorder.left_out).items()},
             disk_error=self._recorder.disk_error,
             slowest_keys=self._health.lowest_share,
+            stopped=self._conductor.stopped,
         )
 
     def _step(self) -> None:
         """The processes already work on the next tick while this one is looked at and recorded."""
         batch = self._hub.gather()
         self._hub.advance()
+        if self._desk:
+            self._desk.step(batch)
         self._conductor.step(batch)
         self._recorder.write(batch)
         for topic, view in self._views.of(batch):
@@ -111,10 +121,15 @@ class Trial:
             self._await_room()
             self._show(self._conductor, (self._t_ns - self._began_ns) / 1e9)
 
+    def _wait(self) -> None:
+        """Serve people while the robots are not all there; who stops the run ends the waiting, too."""
+        if self._desk:
+            self._desk.serve()
+        if self._conductor.stopped:
+            raise RunFailedError(f"stopped by {self._conductor.stopped} before it began")
+
     def _look_for_standing(self, t_ns: int) -> None:
         """People can help a robot that stands."""
-        if self._conductor.paused:
-            return
         if self._environment.waits_for_people:
             for line in self._conductor.newly_standing(t_ns):
                 self._environment.warn(line)
@@ -124,19 +139,17 @@ class Trial:
     def _await_room(self) -> None:
         """While the disk has no room the trial pauses: robots stand after their moves, a lockstep stops."""
         lack = self._recorder.waits_for
-        if bool(lack) == self._conductor.paused:
+        if bool(lack) == self._conductor.lacks_room:
             return
         self._tell("paused" if lack else "goes on", lack or "the disk has room again")
-        if self._environment.is_lockstep:
+        if self._environment.session is None:
             for _ in unix_clock().ticks(LOOK_FOR_ROOM_S):
                 self._recorder.flush()
                 if not self._recorder.waits_for:
                     break
             self._tell("goes on", "the disk has room again")
-        elif lack:
-            self._conductor.pause()
         else:
-            self._conductor.go_on()
+            self._conductor.lacks_room = bool(lack)
 
     def _tell(self, name: str, text: str) -> None:
         self._environment.warn(f"{name}: {text}")

@@ -32,6 +32,26 @@ def new_file(path: Path) -> BufferedWriter:
         raise UserError(f"{path}: cannot be written ({error.strerror}); choose another --out") from error
 
 
+def new_folder(path: Path) -> Path:
+    """Make a folder, and those above it; UserError if it is there already or cannot be made."""
+    try:
+        path.mkdir(parents=True)
+    except FileExistsError as error:
+        raise UserError(f"{path}: exists already; nothing is overwritten, choose another --out") from error
+    except OSError as error:
+        raise UserError(f"{path}: cannot be made ({error.strerror}); choose another --out") from error
+    return path
+
+
+def make_folder(path: Path) -> Path:
+    """A folder, which may be there already; UserError if it cannot be made."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be made ({error.strerror}); choose another --out") from error
+    return path
+
+
 def new_csv(path: Path, told: Iterable[str], columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
     """A new file of rows under `columns`, after comment lines that say how it was made."""
     with new_file(path) as file, TextIOWrapper(file, encoding="utf-8", newline="") as text:
@@ -50,7 +70,9 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
             os.fsync(file.fileno())
         temporary.replace(path)
     except OSError as error:
-        raise RunFailedError(f"{path} cannot be written ({error}); what was finished is kept") from error
+        raise RunFailedError(
+            f"{path} cannot be written ({error.strerror or error}); what was finished is kept"
+        ) from error
     finally:
         temporary.unlink(missing_ok=True)
     return path

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 
 class Move(IntEnum):
@@ -48,8 +49,7 @@ def wrap_angle_rad(angle_rad: float) -> float:
     return math.pi - (math.pi - angle_rad) % math.tau
 
 
-@dataclass(frozen=True)
-class Pose:
+class Pose(NamedTuple):
     """A place and a heading in the arena frame."""
 
     x_m: float

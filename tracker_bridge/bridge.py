@@ -30,6 +30,8 @@ class Bridge:
         speed: float = 1.0,
     ) -> None:
         self._backend = backend
+        self._telling = backend if isinstance(backend, Telling) else None
+        self._receiving = backend if isinstance(backend, Receiving) else None
         self._plausibility = plausibility
         self._node = node
         self._seen_ns: dict[str, int | None] = dict.fromkeys(robots)
@@ -50,11 +52,11 @@ class Bridge:
             if seen_ns is not None and t_ns - seen_ns > LOST_AFTER_NS:
                 self._seen_ns[robot] = None
                 self._report("lost", f"{robot}: no believable pose for {LOST_AFTER_NS // NS_PER_S} s")
-        if isinstance(self._backend, Telling):
-            for name, text in self._backend.told():
+        if self._telling:
+            for name, text in self._telling.told():
                 self._report(name, text)
-        if isinstance(self._backend, Receiving):
-            self._tell_of_datagrams(self._backend)
+        if self._receiving:
+            self._tell_of_datagrams(self._receiving)
 
     def _pass_on(self, tracked: TrackedPose, t_ns: int) -> None:
         dated = self._capture_times.on_own_clock(tracked, t_ns)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from swarm.clock import NS_PER_S
 from swarm.runtime.clock_offset import ClockOffset, described
@@ -27,10 +26,17 @@ class CaptureTimes:
 
     def on_own_clock(self, tracked: TrackedPose, t_ns: int) -> TrackedPose | None:
         """The pose with its time on the bridge's clock; None if that time is not to be believed."""
-        clock = self._clocks.setdefault(tracked.robot, ClockOffset(self._speed, can_step=True))
+        clock = self._clock_of(tracked.robot)
         before_ns = clock.ns
         captured_t_ns = clock.on_this_clock(tracked.captured_t_ns, t_ns, self._lateness_ns)
         if clock.ns != before_ns:
             text = f"the tracking system's clock is {described(clock.ns)} this one"
             self._report("clock", f"{tracked.robot}: {text}: corrected")
-        return None if captured_t_ns is None else replace(tracked, captured_t_ns=captured_t_ns)
+        if captured_t_ns is None or captured_t_ns == tracked.captured_t_ns:
+            return None if captured_t_ns is None else tracked
+        return tracked._replace(captured_t_ns=captured_t_ns)
+
+    def _clock_of(self, robot: str) -> ClockOffset:
+        if robot not in self._clocks:
+            self._clocks[robot] = ClockOffset(self._speed, can_step=True)
+        return self._clocks[robot]

@@ -9,6 +9,7 @@ from importlib import import_module
 from swarm.checkup.finding import require_good
 from swarm.config.arguments import place
 from swarm.errors import guarded
+from swarm.extras import naming_extras
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
@@ -31,6 +32,7 @@ def main() -> None:
     sys.exit(guarded(lambda: call(sys.argv[1:])))
 
 
+@naming_extras()
 def call(words: list[str]) -> None:
     """Do what a verb says, or, without one, pass poses on."""
     verb = next((verb for verb in (" ".join(words[:2]), *words[:1]) if verb in VERBS), None)

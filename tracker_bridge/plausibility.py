@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import deque
+from collections import defaultdict, deque
 from dataclasses import dataclass, field
 
 from swarm.clock import NS_PER_S
@@ -51,19 +51,21 @@ class Plausibility:
 
     def __init__(self, settings: PlausibilitySettings) -> None:
         self._settings = settings
-        self._tracks: dict[str, _Track] = {}
+        self._tracks: defaultdict[str, _Track] = defaultdict(_Track)
 
     def reason_against(self, tracked: TrackedPose) -> str | None:
         """Why a pose may not be passed on, or None if it may. The first word is the kind of reason."""
-        track = self._tracks.setdefault(tracked.robot, _Track())
-        return (
+        track = self._tracks[tracked.robot]
+        impossible = (
             self._not_finite(tracked.pose)
             or self._outside(tracked.pose)
             or self._late(track, tracked)
             or self._frozen(track, tracked)
-            or self._swapped(track, tracked)
-            or self._jump(track, tracked)
         )
+        if impossible:
+            return impossible
+        reachable = self._reachable(track.believed, tracked)
+        return self._swapped(track, tracked, reachable) or self._jump(track, tracked, reachable)
 
     @staticmethod
     def _not_finite(pose: Pose) -> str | None:
@@ -95,13 +97,13 @@ class Plausibility:
             return None
         return f"frozen: the same pose {track.repeated + 1} times"
 
-    def _swapped(self, track: _Track, tracked: TrackedPose) -> str | None:
+    def _swapped(self, track: _Track, tracked: TrackedPose, reachable: bool) -> str | None:
         """A robot that jumps to where another just was is taken for it, until it jumps again."""
         if track.swapped_with and self._reachable(track.doubted, tracked):
             other = track.swapped_with
         else:
             track.doubted = deque() if track.swapped_with else track.doubted
-            other = "" if self._reachable(track.believed, tracked) else self._robot_at(tracked)
+            other = "" if reachable else self._robot_at(tracked)
         track.swapped_with = other
         if not other:
             return None
@@ -119,9 +121,9 @@ class Plausibility:
                 return robot
         return ""
 
-    def _jump(self, track: _Track, tracked: TrackedPose) -> str | None:
+    def _jump(self, track: _Track, tracked: TrackedPose, reachable: bool) -> str | None:
         """A jump is doubted until enough poses agree, for long enough, that the robot is there."""
-        if self._reachable(track.believed, tracked):
+        if reachable:
             self._believe(track, tracked)
             return None
         if not track.doubted or not self._reachable(track.doubted, tracked):
@@ -147,7 +149,7 @@ class Plausibility:
 
     def _reachable(self, earlier: deque[TrackedPose], later: TrackedPose) -> bool:
         """Whether it could have driven there, from the last pose and from the first in the window."""
-        return not earlier or all(self._in_reach(pose, later) for pose in (earlier[-1], earlier[0]))
+        return not earlier or (self._in_reach(earlier[-1], later) and self._in_reach(earlier[0], later))
 
     def _in_reach(self, earlier: TrackedPose, later: TrackedPose) -> bool:
         elapsed_s = (later.captured_t_ns - earlier.captured_t_ns) / NS_PER_S

@@ -16,7 +16,8 @@ from swarm.clock import NS_PER_S, unix_clock
 from swarm.errors import RunFailedError, UserError
 from swarm.messages import topics
 from swarm.messages.header import Header
-from swarm.runtime.process import OneLineParser
+from swarm.runtime.endpoint import DEFAULT_ENDPOINT
+from swarm.runtime.process import OneLineParser, add_protection_arguments, session_settings
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from swarm.signals import leave_on_signals
 
@@ -61,7 +62,7 @@ def _findings(arguments: argparse.Namespace) -> Iterator[Finding]:
     finally:
         body.close()
     if arguments.robot:
-        yield from _pose(arguments.robot, arguments.connect)
+        yield from _pose(arguments.robot, session_settings(arguments, arguments.connect, wait_for_hub=False))
 
 
 def _camera(body: EpuckBody, name: str) -> Iterator[Finding]:
@@ -81,9 +82,9 @@ def _passed_over(name: str, text: str) -> None:
     """Events go into a run's log; here the findings say what matters."""
 
 
-def _pose(robot: str, endpoint: str) -> Iterator[Finding]:
+def _pose(robot: str, settings: SessionSettings) -> Iterator[Finding]:
     """Whether the tracker sees the robot, and whether its clock agrees with this machine's."""
-    with Session(SessionSettings(endpoint, wait_for_hub=False)) as session:
+    with Session(settings) as session:
         inbox = session.inbox(topics.POSE.key(robot), topics.POSE.delivery)
         for _ in islice(unix_clock().ticks(TICK_S), POSE_TICKS):
             if samples := inbox.poll():
@@ -114,6 +115,7 @@ def check_parser() -> OneLineParser:
         "--camera", default="", metavar="NAME", help="another camera than that on the link: /dev/videoN"
     )
     parser.add_argument("--robot", default="", metavar="ID", help="look for its pose from the tracker too")
-    parser.add_argument("--connect", default="tcp/127.0.0.1:7447", metavar="tcp/HOST:PORT", help="the server")
+    parser.add_argument("--connect", default=DEFAULT_ENDPOINT, metavar="tls/HOST:PORT", help="the server")
+    add_protection_arguments(parser)
     parser.add_argument("--json", action="store_true", help="print the findings as one JSON object")
     return parser

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class WheelSpeeds:
+class WheelSpeeds(NamedTuple):
     """Speeds of the two wheels; forward is positive."""
 
     left_steps_per_s: float
     right_steps_per_s: float
 
 
-@dataclass(frozen=True, slots=True)
-class WheelSteps:
+class WheelSteps(NamedTuple):
     """Steps counted by the two wheels, unwrapped: they only make sense as differences."""
 
     left: int

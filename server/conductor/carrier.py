@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
+from server.conductor.prompts import Prompts
 from server.reporter import Reporter
 from swarm.geometry import Pose
 from swarm.messages import swarm_pb2 as pb
@@ -29,14 +30,16 @@ class SimulatedCarrier:
 
 
 class Operator:
-    """Asks a person, on the terminal and in the log."""
+    """Asks a person: on the terminal, in the log, and wherever somebody sees how the run goes."""
 
-    def __init__(self, reporter: Reporter, ask: Callable[[str], None]) -> None:
+    def __init__(self, reporter: Reporter, ask: Callable[[str], None], prompts: Prompts) -> None:
         self._reporter = reporter
         self._ask = ask
+        self._prompts = prompts
 
     def relocate(self, robot: str, to: Pose, why: str) -> None:
         place = f"x {to.x_m:.2f} m, y {to.y_m:.2f} m, heading {to.theta_rad:.2f} rad"
         text = f"please carry {robot} to {place}: {why}"
-        self._ask(text)
+        number = self._prompts.ask(robot, to, text)
+        self._ask(f"{text} (prompt {number})")
         self._reporter.event("carry", text, pb.Event.WARNING)

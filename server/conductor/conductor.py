@@ -8,6 +8,7 @@ from server.conductor.camera_views import CameraViews
 from server.conductor.carrier import Carrier
 from server.conductor.copy_errors import CopyErrors
 from server.conductor.earlier import EarlierProgress
+from server.conductor.run_control import RunControl
 from server.conductor.standstill import Standstill
 from server.conductor.visits import Visits
 from server.hubs.hub import Batch
@@ -34,6 +35,7 @@ class Conductor:
         identity: RunIdentity,
         reporter: Reporter,
         carrier: Carrier,
+        control: RunControl,
         earlier: Mapping[str, EarlierProgress] | None = None,
     ) -> None:
         self._experiment = experiment
@@ -55,12 +57,14 @@ class Conductor:
         self._camera_views = CameraViews(experiment, reporter)
         watched_by = {robot.id: robot.watches for robot in experiment.learners if robot.watches}
         self._copy_errors = CopyErrors(watched_by, reporter)
+        self._control = control
         self._state_due_ns = 0
+        self._announced: pb.RunState.Phase.ValueType | None = None
         self._standstill = Standstill(experiment)
         self._told_of: set[str] = set()
         self._ending = False
-        self.paused = False
-        """Whether the robots are to stand after their moves."""
+        self.lacks_room = False
+        """Whether the robots are to stand after their moves because nothing can be recorded."""
         self.moves = {robot.id: 0 for robot in experiment.robot}
         """Moves made so far, by robot."""
         self.best_path = {robot.id: 0 for robot in experiment.learners}
@@ -69,8 +73,23 @@ class Conductor:
 
     @property
     def ended(self) -> bool:
-        """Whether every learner has made its moves and everyone has been told."""
+        """Whether everyone has been told that it is over: every learner has made its moves, or an operator
+        stopped the trial.
+        """
         return self._ending
+
+    @property
+    def stopped(self) -> str:
+        """Who ended the trial before its time, and why; empty if nobody did."""
+        return self._control.stopped
+
+    @property
+    def phase(self) -> pb.RunState.Phase.ValueType:
+        """What the trial is about now."""
+        if self._ending:
+            return pb.RunState.ENDED
+        phase = self._control.phase
+        return pb.RunState.PAUSED if self.lacks_room and phase == pb.RunState.RUNNING else phase
 
     @property
     def bad_messages(self) -> int:
@@ -88,27 +107,15 @@ class Conductor:
         for best in self._best_paths.take():
             self.best_path[best.robot] = best.message.length
         self._conduct_visits(batch.t_ns)
-        self._ending = all(self.moves[learner] >= self._experiment.run.moves for learner in self.best_path)
-        if batch.t_ns >= self._state_due_ns or self._ending:
+        done = all(self.moves[learner] >= self._experiment.run.moves for learner in self.best_path)
+        self._ending = done or bool(self._control.stopped)
+        if self.phase != pb.RunState.RUNNING:
+            self._standstill.excused(self.moves, batch.t_ns)
+        self._standstill.excused(self._control.paused_robots, batch.t_ns)
+        if batch.t_ns >= self._state_due_ns or self._ending or self.phase != self._announced:
             self._state_due_ns = batch.t_ns + RUN_STATE_PERIOD_NS
-            self.announce(self._phase)
-
-    @property
-    def _phase(self) -> pb.RunState.Phase.ValueType:
-        if self._ending:
-            return pb.RunState.ENDED
-        return pb.RunState.PAUSED if self.paused else pb.RunState.RUNNING
-
-    def pause(self) -> None:
-        """Let the robots stand after their moves, until `go_on`."""
-        self.paused = True
-        self._state_due_ns = 0
-
-    def go_on(self) -> None:
-        """End a pause; how long the robots stood in it does not count."""
-        self.paused = False
-        self._state_due_ns = 0
-        self._standstill = Standstill(self._experiment)
+            self._control.repeat_pauses()
+            self.announce(self.phase)
 
     def _take_up(self, earlier: Mapping[str, EarlierProgress]) -> None:
         """Go on from where the trial was when its last server ended."""
@@ -130,6 +137,7 @@ class Conductor:
         robot = received.robot
         if robot in self.moves:
             self.moves[robot] = max(received.message.moves, self.moves[robot])
+            self._control.resumes(robot, received.message)
 
     def _conduct_visits(self, t_ns: int) -> None:
         for path in self._paths.take():
@@ -142,7 +150,7 @@ class Conductor:
             if word.message.phase == pb.Visit.DONE:
                 self._copy_errors.visit_done(word.robot, word.message, t_ns)
         self._copy_errors.step(t_ns)
-        if not self.paused:
+        if self.phase == pb.RunState.RUNNING:
             self._visits.order_due(t_ns)
         self._camera_views.step(self._truths.take(), self._visits.watching)
 
@@ -167,6 +175,7 @@ class Conductor:
 
     def announce(self, phase: pb.RunState.Phase.ValueType) -> None:
         """Tell everyone the phase of the trial."""
+        self._announced = phase
         identity = self._identity
         state = pb.RunState(phase=phase, trial=identity.trial, experiment=self._experiment.run.name)
         if identity.run_id:

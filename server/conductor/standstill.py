@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
@@ -31,6 +31,11 @@ class Standstill:
     def moved(self, robot: str, t_ns: int) -> None:
         """A robot has made a move."""
         self._moved_ns[robot] = t_ns
+
+    def excused(self, robots: Iterable[str], t_ns: int) -> None:
+        """Robots that stand because somebody wants them to."""
+        for robot in robots:
+            self.moved(robot, t_ns)
 
     def standing(self, moves: Mapping[str, int], t_ns: int) -> list[str]:
         """The robots that have moves to make, and made none for too long. It counts from the first call."""

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from typing import Any
 
 from server.hubs.attendance import Tell
 from swarm.logs.ending import Sender
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Item
-from swarm.messages.topics import topic_of
+from swarm.messages.topics import EARLIER, Role, Topic, topic_of
 from swarm.runtime.identity import Fingerprint
 from swarm.runtime.liveliness import Presence
+from swarm.runtime.senders import EMULATOR
 
-SPEAKING_FOR_ALL = ("tracker", "emulator")
-"""They publish what they measure of every robot under its keys."""
+MOST_STARTS = 100
+"""Of one name in a run: who starts more often is ill, or makes epochs up."""
 MOST_SAID = 1000
 """Refusals that are told one by one; a stranger may make up new epochs for ever."""
 
@@ -24,12 +26,11 @@ class Admission:
     An epoch that was admitted stays so: what a process sent before it left arrives after it has gone.
     """
 
-    def __init__(self, identity: Fingerprint, robots: Collection[str], own_epoch: int, tell: Tell) -> None:
+    def __init__(self, identity: Fingerprint, robots: Collection[str], tell: Tell) -> None:
         self._identity = identity
         self._robots = robots
         self._tell = tell
-        self._served_by = {own_epoch}
-        self._admitted: set[tuple[str, int]] = set()
+        self._admitted: dict[tuple[str, str], set[int]] = {}
         self._said: set[str] = set()
 
     def admits(self, presence: Presence) -> bool:
@@ -38,43 +39,41 @@ class Admission:
         if reason:
             who = f"{presence.kind} {presence.name!r} on host {presence.host!r}"
             self._say(f"{who} does not take part: {reason}")
-        elif presence.kind == "robot":
-            self._admitted.add((presence.name, presence.epoch))
-        elif presence.kind in SPEAKING_FOR_ALL:
-            self._served_by.add(presence.epoch)
+        else:
+            self._admitted.setdefault((presence.kind, presence.name), set()).add(presence.epoch)
         return not reason
 
     def admit(self, senders: Iterable[Sender]) -> None:
         """Who stands in the logs of a trial took part in it, though its process may be gone."""
         for key, epoch in senders:
-            found = topic_of(key)
-            if found and found[1] and not found[0].to_robot:
-                self._admitted.add((found[1], epoch))
-            else:
-                self._served_by.add(epoch)
+            for name in _senders(*found)[:1] if (found := topic_of(key)) else ():
+                self._admitted.setdefault(name, set()).add(epoch)
 
     def knows(self, epoch: int) -> bool:
         """Whether an epoch is of somebody who took part."""
-        return epoch in self._served_by or any(epoch == admitted for _, admitted in self._admitted)
+        return any(epoch in starts for starts in self._admitted.values())
 
     def accepts(self, item: Item) -> bool:
-        """Whether a message is the run's: a robot speaks under its own keys; server, tracker and emulator
-        under all.
+        """Whether a message that came from elsewhere is the run's: of whoever the key table says sends it.
 
-        Keys that the key table does not know are left to the recorder, which counts them.
+        What the server says comes from nowhere else. An operator shows no presence, and hubs with
+        certificates know it. Keys that the table does not know are left to the recorder, which counts them.
         """
         epoch = item.header.epoch
-        if epoch in self._served_by:
-            return True
         found = topic_of(item.key)
-        if found is None or (not found[0].to_robot and (found[1], epoch) in self._admitted):
+        if found is None or any(epoch in self._admitted.get(name, ()) for name in _senders(*found)):
+            return True
+        if found[0].sender is Role.OPERATOR:
             return True
         self._say(f"messages of {item.key[:80]} from nobody who takes part (epoch {epoch}) are left out")
         return False
 
     def _reason_against(self, presence: Presence) -> str:
         """Why somebody does not take part; empty if they do."""
-        if presence.kind == "robot" and presence.name not in self._robots:
+        starts = self._admitted.get((presence.kind, presence.name), set())
+        if len(starts) >= MOST_STARTS and presence.epoch not in starts:
+            return f"it has started {MOST_STARTS} times in this run"
+        if presence.kind in ("robot", EARLIER["robot"]) and presence.name not in self._robots:
             return f"the experiment does not name it; it names {', '.join(self._robots)}"
         if presence.identity == str(self._identity):
             return ""
@@ -87,3 +86,10 @@ class Admission:
         if text not in self._said and len(self._said) < MOST_SAID:
             self._said.add(text)
             self._tell("refused", text, pb.Event.WARNING)
+
+
+def _senders(topic: Topic[Any], robot: str) -> tuple[tuple[str, str], ...]:
+    """Kind and name of those who send a topic, of or about a robot, to the server."""
+    if topic.sender is Role.TRACKER:
+        return (("tracker", "bridge"), (EARLIER["tracker"], "bridge"))
+    return (("robot", robot), (EARLIER["robot"], robot), EMULATOR) if topic.sender is Role.ROBOT else ()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Protocol, TypeVar
 
@@ -18,8 +18,12 @@ M = TypeVar("M", bound=Message)
 class Hub(Protocol):
     """What the conductor of a trial works with."""
 
-    def start(self) -> None:
-        """Wait until every process is there."""
+    def start(self, meanwhile: Callable[[], None]) -> None:
+        """Wait until every process is there; `meanwhile` is called again and again while they are not."""
+
+    @property
+    def missing(self) -> list[str]:
+        """Who is not there."""
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
         """Send a message of the server's own; it is part of the next batch."""

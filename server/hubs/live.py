@@ -13,6 +13,7 @@ from server.hubs.admission import Admission
 from server.hubs.attendance import Attendance
 from server.hubs.clock_watch import ClockWatch
 from server.hubs.hub import Batch
+from server.hubs.limited_inbox import inboxes_of
 from server.hubs.unheard import Unheard, must_not_be_lost
 from swarm.clock import WallClock
 from swarm.config.experiment import Experiment
@@ -20,7 +21,7 @@ from swarm.logs.ending import Sender
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
-from swarm.messages.topics import ACCOUNT, RUN_IDENTITY, Delivery, Topic, topic_of
+from swarm.messages.topics import ACCOUNT, RUN_IDENTITY, TABLE, Delivery, Topic, topic_of
 from swarm.runtime.account import unpack_account
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import ALIVE_ROBOTS_AND_TRACKERS, present
@@ -33,11 +34,14 @@ NAMED_EVERY_S = 5.0
 """Who is waited for is named so often: a person sees it, and it fills no screen."""
 LAST_WORDS_S = 10.0
 """Real seconds for the closing accounts. An agent gives its own within a tick, on a busy machine later."""
-EVERYTHING = ("robot/**", "tracker/**", "run/**", "server/**", "sim/**")
 
 
 class LiveHub:
-    """Hears every key of the swarm; a batch is what arrived in one period of the clock."""
+    """Hears what the others of the swarm say; a batch is what arrived in one period of the clock.
+
+    `epoch` is the one that the server shows presence with. What the server says itself does not come over the
+    wire: there, somebody else says it.
+    """
 
     def __init__(
         self,
@@ -47,6 +51,7 @@ class LiveHub:
         identity: RunIdentity,
         check: Callable[[], None],
         warn: Callable[[str], None],
+        epoch: int,
         earlier: Mapping[Sender, int] | None = None,
     ) -> None:
         self._session = session
@@ -54,13 +59,13 @@ class LiveHub:
         self._ticks: Iterator[int] = clock.ticks(experiment.simulation.tick_s)
         self._check = check
         self._warn = warn
-        earlier = earlier or {}
-        self._inboxes = [session.recovering_inbox(key) for key in EVERYTHING]
-        self._unheard = Unheard(earlier)
-        self._live = LivePublisher(session, clock, epoch=time.time_ns())
+        self._live = LivePublisher(session, clock, epoch)
+        self._own: list[Item] = []
         robots = [robot.id for robot in experiment.robot]
-        self._admission = Admission(identity.fingerprint, robots, self._live.epoch, self._tell)
-        self._admission.admit(earlier)
+        self._inboxes = inboxes_of(session, TABLE, robots, clock.speed, self._tell)
+        self._unheard = Unheard(earlier or {})
+        self._admission = Admission(identity.fingerprint, robots, self._tell)
+        self._admission.admit(earlier or {})
         watch = session.presence_watch(ALIVE_ROBOTS_AND_TRACKERS)
         self._attendance = Attendance(watch, robots, self._admission.admits, self._tell)
         self._clocks = ClockWatch(clock.speed, self._tell)
@@ -74,7 +79,11 @@ class LiveHub:
         self.without_header = 0
         """Messages that were left out because nothing sensible says who sent them when."""
 
-    def start(self) -> None:
+    @property
+    def missing(self) -> list[str]:
+        return self._attendance.missing
+
+    def start(self, meanwhile: Callable[[], None] = lambda: None) -> None:
         """Wait until every robot of the experiment and a tracker are there; name those that are missing.
 
         What they send meanwhile is taken in, or Zenoh would have to wait; of it only what must not be lost
@@ -82,8 +91,9 @@ class LiveHub:
         """
         named_s = time.monotonic()
         self._attendance.look()
-        while missing := self._attendance.missing:
+        while missing := self.missing:
             self._check()
+            meanwhile()
             next(self._ticks)
             self._early.extend(item for item in self._received() if must_not_be_lost(item.key))
             if time.monotonic() - named_s > NAMED_EVERY_S:
@@ -91,7 +101,7 @@ class LiveHub:
                 self._warn(f"waiting for {', '.join(missing)}")
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
-        self._live.publish(topic, message, robot)
+        self._own.append(self._live.publish(topic, message, robot))
         if isinstance(message, pb.RunState) and message.phase == pb.RunState.ENDED:
             self._ended = True
             self._attendance.dismiss()
@@ -103,19 +113,19 @@ class LiveHub:
         t_ns = next(self._ticks)
         if not self._ended:
             self._check()
-        items = [*self._early, *self._received()]
-        self._early.clear()
+        items = self._waiting()
         self._clocks.step(items, self._clock.now_ns())
         return Batch(t_ns, items)
 
     def unsent(self) -> Batch:
-        """What has arrived by now: the server's own messages come back over the wire like any other."""
-        return Batch(self._clock.now_ns(), self._received())
+        """What has arrived by now, and what the server has said."""
+        return Batch(self._clock.now_ns(), self._waiting())
 
     def finish(self) -> Batch:
         """The run's state ENDED has told the processes already: wait until they have given account."""
-        there = [one for kind in ("robot", "tracker") for one in present(self._session, kind)]
-        leaving = {one.epoch for one in there if self._admission.admits(one)}
+        self._attendance.look()
+        there = [one.epoch for kind in ("robot", "tracker") for one in present(self._session, kind)]
+        leaving = {epoch for epoch in there if self._admission.knows(epoch)}
         deadline_s = time.monotonic() + LAST_WORDS_S
         self._hear_accounts()
         items = self._received()
@@ -147,7 +157,8 @@ class LiveHub:
             if header is not None and self._admission.knows(header.epoch):
                 self._gone.add(header.epoch)
                 for key, last in unpack_account(sample.payload).items():
-                    self._accounts[key, header.epoch] = last
+                    if self._admission.accepts(Item(key, header, b"")):
+                        self._accounts[key, header.epoch] = last
 
     def _tell(self, name: str, text: str, level: pb.Event.Level.ValueType) -> None:
         """An event in the log, and a line for whoever watches unless it is only for the log."""
@@ -155,11 +166,20 @@ class LiveHub:
         if level != pb.Event.INFO:
             self._warn(text)
 
+    def _waiting(self) -> list[Item]:
+        """What no batch has held yet: from before the trial began, and what has come since the last."""
+        items = [*self._early, *self._received()]
+        self._early.clear()
+        return items
+
     def _received(self) -> list[Item]:
         """A sender's presence arrives before its first message, and so is looked at after the messages."""
-        items = [item for inbox in self._inboxes for item in self._items(inbox.poll())]
+        now_s = time.monotonic()
+        items = [item for inbox in self._inboxes for item in self._items(inbox.poll(now_s))]
         self._attendance.look()
-        return self._unheard.of(filter(self._admission.accepts, items), self._clock.now_ns())
+        accepted = self._unheard.of(filter(self._admission.accepts, items), self._clock.now_ns())
+        own, self._own = self._own, []
+        return accepted + own
 
     def _items(self, samples: Iterable[WireSample]) -> Iterator[Item]:
         for sample in samples:

@@ -78,10 +78,16 @@ class LockstepHub:
         """The run's time at the end of the exchange."""
         return self.number * self._ticks * self._tick_ns
 
-    def start(self) -> None:
+    @property
+    def missing(self) -> list[str]:
+        """The processes that have not greeted."""
+        return sorted(set(self._publishers) - set(self._subscriptions))
+
+    def start(self, meanwhile: Callable[[], None] = lambda: None) -> None:
         """Wait for every process's greeting; the first tick answers it."""
         deadline_s = self._monotonic_s() + GREETED_WITHIN_S
-        while missing := sorted(set(self._publishers) - set(self._subscriptions)):
+        while missing := self.missing:
+            meanwhile()
             greeting = self._next_answer()
             if greeting and greeting.number == 0 and greeting.process in self._publishers:
                 self._subscriptions[greeting.process] = [item.key for item in greeting.items]

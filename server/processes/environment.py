@@ -13,6 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from server.conductor.carrier import Carrier, Operator, SimulatedCarrier
+from server.conductor.prompts import Prompts
 from server.hubs.hub import Hub
 from server.hubs.live import LiveHub
 from server.hubs.lockstep import LockstepHub
@@ -26,6 +27,7 @@ from swarm.config.experiment import REAL_LINKS, Experiment
 from swarm.errors import UserError
 from swarm.logs.ending import Sender
 from swarm.parallel import available_cores
+from swarm.plugins import TRACKERS, plugins
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.lockstep import patient
@@ -67,8 +69,9 @@ class TrialEnvironment:
     batches_between_flushes: int
     warn: Warn
     """Shows a line to whoever watches."""
-    is_lockstep: bool = False
-    """Whether time stands still while the server does something else."""
+    prompts: Prompts
+    session: Session | None = None
+    """Where people's orders and questions come in; None in a lockstep, which nobody can join."""
     waits_for_people: bool = False
 
 
@@ -95,14 +98,18 @@ def simulated(
         emulated = emulated_addresses(experiment, Path(sockets)) if emulate else {}
         trial = plan.identity.trial
         specs = run_table(experiment, plan.file, endpoint, trial, pace, plan.output, emulated)
-        claim(session, _presence(plan.identity))
+        presence = _presence(plan.identity)
+        claim(session, presence)
         with Supervisor(specs, plan.output, spread(len(specs), cores)) as supervisor:
             core_of = {os.getpid(): cores[0], **supervisor.core_of}
             probe = PlacementProbe(partial(place, core_of, cores))
-            hub, flush_every = _hub(experiment, plan.identity, session, pace, supervisor, warn, probe)
+            hub, flush_every = _hub(
+                experiment, plan.identity, session, pace, supervisor, warn, probe, presence.epoch
+            )
             reporter = Reporter(hub)
+            asked = None if pace.lockstep else session
             carrier = SimulatedCarrier(reporter)
-            yield TrialEnvironment(hub, reporter, carrier, flush_every, warn, is_lockstep=pace.lockstep)
+            yield TrialEnvironment(hub, reporter, carrier, flush_every, warn, Prompts(), asked)
 
 
 def require_emulation(experiment: Experiment, speed: float | None, *, emulate: bool) -> None:
@@ -118,6 +125,16 @@ def require_emulation(experiment: Experiment, speed: float | None, *, emulate: b
         raise UserError(f"--emulate: no robot's driver is one of {', '.join(REAL_LINKS)}")
 
 
+def require_tracker(experiment: Experiment, speed: float | None) -> None:
+    """UserError for a tracking system that goes by a time of its own, which a lockstep does not wait for."""
+    name = experiment.tracker.backend
+    if speed is None and plugins(TRACKERS)[name].load().poll_s is not None:
+        raise UserError(
+            f'[tracker] backend is {name!r}, which has a time of its own: a simulation needs "sim", or '
+            f"--speed X and a program that plays {name}"
+        )
+
+
 def _hub_settings(endpoint: str, pace: Pace) -> SessionSettings:
     settings = SessionSettings(endpoint, hub=True)
     return patient(settings) if pace.lockstep else settings
@@ -131,11 +148,12 @@ def _hub(
     supervisor: Supervisor,
     warn: Warn,
     probe: PlacementProbe,
+    epoch: int,
 ) -> tuple[Hub, int]:
     """The hub of a pace, and how many of its batches come between two flushes."""
     if not pace.lockstep:
         clock = scaled_clock(pace.started_ns, pace.speed)
-        live = LiveHub(session, clock, experiment, identity, supervisor.check, warn)
+        live = LiveHub(session, clock, experiment, identity, supervisor.check, warn, epoch)
         return live, _live_flush(experiment, pace.speed)
     names, ticks = list(supervisor.pids), experiment.ticks_per_exchange
     tick_s = experiment.simulation.tick_s
@@ -163,14 +181,21 @@ def laboratory(
     experiment: Experiment,
     session: Session,
     warn: Warn,
+    going_on: Callable[[], None],
     plan: TrialPlan,
 ) -> Iterator[TrialEnvironment]:
-    """Robots and a tracker bridge that others start: the server waits for them, and people carry robots."""
-    claim(session, _presence(plan.identity))
-    hub = LiveHub(session, unix_clock(), experiment, plan.identity, _nothing_to_check, warn, plan.earlier)
+    """Robots and a tracker bridge that others start: the server waits for them, and people carry robots.
+
+    They are not ours to check: who is missing shows by presence and health. `going_on` is called every tick.
+    """
+    presence = _presence(plan.identity)
+    claim(session, presence)
+    clock = unix_clock()
+    hub = LiveHub(session, clock, experiment, plan.identity, going_on, warn, presence.epoch, plan.earlier)
     reporter = Reporter(hub)
-    carrier = Operator(reporter, warn)
-    yield TrialEnvironment(hub, reporter, carrier, _live_flush(experiment, 1.0), warn, waits_for_people=True)
+    prompts = Prompts()
+    carrier, flush_every = Operator(reporter, warn, prompts), _live_flush(experiment, 1.0)
+    yield TrialEnvironment(hub, reporter, carrier, flush_every, warn, prompts, session, waits_for_people=True)
 
 
 def _presence(identity: RunIdentity) -> Presence:
@@ -179,7 +204,3 @@ def _presence(identity: RunIdentity) -> Presence:
 
 def _live_flush(experiment: Experiment, speed: float) -> int:
     return max(1, round(LIVE_FLUSH_S * speed / experiment.simulation.tick_s))
-
-
-def _nothing_to_check() -> None:
-    """The laboratory's processes are not ours: who is missing shows by presence and health."""

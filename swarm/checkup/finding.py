@@ -64,3 +64,8 @@ def require_good(file: Path, found: Iterable[Finding]) -> None:
         if finding.level is Level.BAD:
             where = ConfigFile(file).place(finding.key) if finding.key else finding.about
             raise UserError(f"{where}: {finding}")
+
+
+def any_bad(found: Iterable[Finding]) -> bool:
+    """Whether something has to be mended first."""
+    return any(finding.level is Level.BAD for finding in found)

@@ -10,14 +10,18 @@ import typer
 from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
+from swarm.cli.deploy import deploy_command
 from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
 from swarm.cli.export import export_command
 from swarm.cli.info import info_command
+from swarm.cli.lab import lab_app
+from swarm.cli.orders import done_command, estop_command, pause_command, resume_command, stop_command
 from swarm.cli.recover import recover_command
 from swarm.cli.replay import replay_command
 from swarm.cli.reproduce import reproduce_command
 from swarm.cli.simulate import simulate_command
+from swarm.cli.status import status_command
 from swarm.cli.trials import trials_command
 from swarm.errors import UserError
 from swarm.version import version_text
@@ -49,6 +53,12 @@ def _root(
 
 app.command("doctor")(doctor_command)
 app.command("simulate")(simulate_command)
+app.command("status")(status_command)
+app.command("pause")(pause_command)
+app.command("resume")(resume_command)
+app.command("stop")(stop_command)
+app.command("estop")(estop_command)
+app.command("done")(done_command)
 app.command("reproduce")(reproduce_command)
 app.command("claims")(claims_command)
 app.command("analyze")(analyze_command)
@@ -59,6 +69,8 @@ app.command("check")(check_command)
 app.command("recover")(recover_command)
 app.command("replay")(replay_command)
 app.command("export")(export_command)
+app.command("deploy")(deploy_command)
+app.add_typer(lab_app, name="lab")
 
 
 def _help_of(error: typer.TyperException) -> str:

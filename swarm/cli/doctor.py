@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from swarm.cli.output import print_json
+from swarm.cli.output import print_findings, print_json
 from swarm.cli.values import good_place
-
-if TYPE_CHECKING:
-    from swarm.checkup.finding import Finding
 
 
 def doctor_command(
@@ -30,31 +27,13 @@ def doctor_command(
     experiment.
     """
     from swarm.checkup.checkup import findings
-    from swarm.checkup.finding import Level
+    from swarm.checkup.finding import any_bad
     from swarm.config.experiment import Experiment
 
     found = findings(Experiment.load(experiment), out)
     if json:
         print_json({"experiment": str(experiment), "findings": [finding.as_json() for finding in found]})
     else:
-        _print_table(found)
-    if any(finding.level is Level.BAD for finding in found):
+        print_findings(found)
+    if any_bad(found):
         raise typer.Exit(1)
-
-
-COLOURS = {"good": "green", "warning": "yellow", "bad": "red"}
-
-
-def _print_table(found: list[Finding]) -> None:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for column in ("", "what", "found", "cure"):
-        table.add_column(column)
-    for finding in found:
-        level = Text(finding.level.value, style=COLOURS[finding.level.value])
-        table.add_row(level, Text(finding.about), Text(finding.text), Text(finding.cure))
-    Console().print(table)

@@ -11,8 +11,8 @@ import typer
 from swarm.cli.output import print_json
 from swarm.cli.values import good_place
 from swarm.config.limits import LARGEST_SEED, MOST_JOBS, MOST_MOVES, MOST_TRIALS
-from swarm.errors import UserError
 from swarm.extras import require_extra
+from swarm.files import new_folder
 from swarm.parallel import available_cores
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def many_trials(
     experiment = Experiment.load(file).changed(seed=seed, moves=moves)
     require_good(file, experiment_findings(experiment))
     of_full = _curves_of(full) if full else None
-    directory = _new_directory(out)
+    directory = new_folder(out)
     many = run_trials(experiment, copies or STORED_COPIES, durations or MEASURED_DURATIONS, trials, jobs)
     files = write_tables(many, directory) | {"picture": str(directory / "curves.png")}
     note = NOTE.format(cap=experiment.learning.path_length_cap) + (FULL_NOTE if of_full else "")
@@ -123,16 +123,6 @@ def trials_command(
         print_json(result)
     else:
         typer.echo("\n".join(_lines(result)))
-
-
-def _new_directory(out: Path) -> Path:
-    try:
-        out.mkdir(parents=True)
-    except FileExistsError as error:
-        raise UserError(f"{out} is there already: choose another --out") from error
-    except OSError as error:
-        raise UserError(f"{out}: cannot be made ({error.strerror}); choose another --out") from error
-    return out
 
 
 def _lines(result: dict[str, Any]) -> list[str]:

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
-from swarm.config.limits import BEYOND_CORNER_M
+from swarm.config.ids import check_id, check_robot_id
+from swarm.config.limits import BEYOND_CORNER_M, MOST_FRAMES
 from swarm.config.toml_files import ConfigFile
 from swarm.errors import nearest
-from swarm.messages.topics import NO_ROBOT, is_id
 
 if TYPE_CHECKING:
     from swarm.config.experiment import Experiment, RobotSettings
 
-_ID_RULE = "an id starts with a small letter and has at most 32 of a-z, 0-9, _ and -"
-
 
 def check_consistency(experiment: Experiment, file: ConfigFile) -> None:
     """UserError, with its line in the file, about what no single value shows."""
-    if not is_id(experiment.run.name):
-        raise file.error(("run", "name"), f"'name' is {experiment.run.name!r}; {_ID_RULE}")
+    check_id(experiment.run.name, ("run", "name"), file)
     if not experiment.learners:
         raise file.error(("robot", 0, "role"), "no robot is a learner: there is nothing to learn or to plot")
     for number, robot in enumerate(experiment.robot):
@@ -27,12 +25,8 @@ def check_consistency(experiment: Experiment, file: ConfigFile) -> None:
 
 def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
     where = ("robot", number)
-    for name, value in (("id", robot.id), ("condition", robot.group)):
-        if not is_id(value):
-            raise file.error((*where, name), f"{name!r} is {value!r}; {_ID_RULE}")
-    if robot.id in NO_ROBOT:
-        names = ", ".join(sorted(NO_ROBOT))
-        raise file.error((*where, "id"), f"'id' is {robot.id!r}, as in keys that name no robot ({names})")
+    check_robot_id(robot.id, (*where, "id"), file)
+    check_id(robot.group, (*where, "condition"), file)
     if robot.paths and robot not in experiment.learners:
         raise file.error((*where, "paths"), f"{robot.id!r} is no learner: it cannot be given paths")
     if len(robot.paths) > experiment.learning.capacity:
@@ -55,6 +49,7 @@ def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, f
         raise file.error(where, f"{robot.id!r} watches {robot.watches!r}; {whom}")
     if robot.watches:
         _check_observers_place(experiment, robot, file)
+        _check_frames(experiment, file)
 
 
 def _check_observers_place(experiment: Experiment, robot: RobotSettings, file: ConfigFile) -> None:
@@ -66,6 +61,17 @@ def _check_observers_place(experiment: Experiment, robot: RobotSettings, file: C
             where,
             f"{robot.id!r} would watch {robot.watches!r} from ({place.x_m:.2f}, {place.y_m:.2f}) m, which is "
             f"off the floor: leave {BEYOND_CORNER_M:g} m east and south of that compartment",
+        )
+
+
+def _check_frames(experiment: Experiment, file: ConfigFile) -> None:
+    visits = experiment.visits
+    frames = math.ceil(visits.duration_s * visits.frames_per_s)
+    if frames > MOST_FRAMES:
+        raise file.error(
+            ("visits", "duration_s"),
+            f"{visits.duration_s:g} s at {visits.frames_per_s:g} frames a second are {frames} frames of a "
+            f"visit, which holds at most {MOST_FRAMES}: watch for less long, or look less often",
         )
 
 

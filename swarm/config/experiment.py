@@ -40,6 +40,15 @@ class Role(Enum):
     EXPERT = "expert"
 
 
+class WithoutServer(StrEnum):
+    """What a robot does that no longer hears the server."""
+
+    WAIT = "wait"
+    """It finishes its move and waits."""
+    STOP = "stop"
+    """It gives up its move, stands at once and waits."""
+
+
 @dataclass(frozen=True)
 class RunSettings:
     """[run]: how long, how often, and from which seed."""
@@ -52,6 +61,10 @@ class RunSettings:
     """Repetitions, each with new robots and random numbers of its own."""
     seed: Annotated[int, Between(0, LARGEST_SEED)] = 1
     """The one root of all randomness; the same seed gives the same log."""
+    without_server: WithoutServer = WithoutServer.WAIT
+    """What a robot does that no longer hears the server: wait after the move under way, or stop at once."""
+    without_server_s: Annotated[float, Between(2, 3600)] = 5.0
+    """Silence after which it does so; the run's state comes once a second, and a lost one stops nobody."""
 
 
 @dataclass(frozen=True)
@@ -178,7 +191,7 @@ class VisitSettings:
     every_tracks: Annotated[int, Between(1, 100_000)] = 10
     """A learner visits at the start and after so many journeys, until its memory is full."""
     duration_s: Annotated[float, Between(1, 600)] = 30.0
-    """How long a learner watches."""
+    """How long a learner watches; with `frames_per_s` for at most 500 frames."""
     frames_per_s: Annotated[float, Between(0.5, 30)] = 5.0
     """Camera frames that are looked at while watching."""
     moves: Annotated[int, Between(1, 100)] = 5
@@ -304,6 +317,10 @@ class Experiment:
         if processes is not None:
             simulation = replace(simulation, processes=processes)
         return replace(self, run=run, simulation=simulation)
+
+    def seen_by(self, calibration: Path) -> Experiment:
+        """The same experiment for a board whose camera is calibrated by a file of its own."""
+        return replace(self, camera=replace(self.camera, calibration=str(calibration)))
 
     def compartment(self, robot: RobotSettings) -> Compartment:
         """The walled square that belongs to a robot."""

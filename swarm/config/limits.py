@@ -16,5 +16,7 @@ MOST_JOBS = 10_000
 """Processes at a time: more than a cluster's scheduler hands out well."""
 MOST_TRIALS = 1_000_000
 """Of the abstract engine: some days of a machine's time."""
+MOST_FRAMES = 500
+"""Of a visit, whose observation is one message: with 91 bytes each, and 60 a move, it stays below 64 kB."""
 BEYOND_CORNER_M = 0.05
 """An observer's place in x and in y: its body, of 0.035 m radius, is wholly outside the compartment."""

@@ -100,6 +100,8 @@ class ConfigFile:
 
     def _scalar(self, kind: type, bounds: Between | None, value: Any, where: tuple[str | int, ...]) -> Any:
         name = _name(where)
+        if kind is Path:
+            return self._beside(value, where)
         if issubclass(kind, Enum):
             known = {member.value: member for member in kind}
             if not isinstance(value, str) or value not in known:
@@ -112,6 +114,13 @@ class ConfigFile:
         if isinstance(value, int | float) and not isinstance(value, bool):
             self._check_number(name, value, bounds, where)
         return value
+
+    def _beside(self, value: Any, where: tuple[str | int, ...]) -> Path:
+        """A file that is named in this one: its path starts at this one's folder."""
+        name: str = self._scalar(str, None, value, where)
+        if not name or "\0" in name:
+            raise self.error(where, f"{_name(where)!r} is {_shown(value)}, which names no file")
+        return self.path.parent / name
 
     def _check_number(
         self, name: str, value: float, bounds: Between | None, where: tuple[str | int, ...]

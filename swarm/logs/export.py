@@ -8,7 +8,7 @@ from pathlib import Path
 import polars as pl
 
 from swarm.errors import UserError
-from swarm.files import write_table
+from swarm.files import new_folder, write_table
 from swarm.logs.identity import identify
 from swarm.logs.parquet import read_logs
 from swarm.logs.trial_logs import joined, logs_of_trial
@@ -31,7 +31,7 @@ def export_log(log: Path, to: Format, out: Path) -> list[Path]:
         from swarm.logs.rosbag2 import write_bag
 
         return write_bag([each.path for each in logs], out)
-    out.mkdir(parents=True)
+    new_folder(out)
     tables = sorted(read_logs(logs, out, sampled=True, show=lambda _: None).tables.values())
     return [_as_csv(table) for table in tables] if to is Format.CSV else tables
 

@@ -84,22 +84,30 @@ class Order(_message.Message):
         RUN: Order._Kind.ValueType  # 1
         """learn, or demonstrate"""
         PAUSE: Order._Kind.ValueType  # 2
-        """stand still until RUN"""
+        """finish the move or the visit, then stand still until RESUME"""
         STOP: Order._Kind.ValueType  # 3
         """motors off, the trial is over"""
         WATCH: Order._Kind.ValueType  # 4
         """stand at the given place and watch the robot there"""
+        RESUME: Order._Kind.ValueType  # 5
+        """go on after PAUSE"""
+        RELEASE: Order._Kind.ValueType  # 6
+        """the emergency is over"""
 
     class Kind(_Kind, metaclass=_KindEnumTypeWrapper): ...
     KIND_UNSPECIFIED: Order.Kind.ValueType  # 0
     RUN: Order.Kind.ValueType  # 1
     """learn, or demonstrate"""
     PAUSE: Order.Kind.ValueType  # 2
-    """stand still until RUN"""
+    """finish the move or the visit, then stand still until RESUME"""
     STOP: Order.Kind.ValueType  # 3
     """motors off, the trial is over"""
     WATCH: Order.Kind.ValueType  # 4
     """stand at the given place and watch the robot there"""
+    RESUME: Order.Kind.ValueType  # 5
+    """go on after PAUSE"""
+    RELEASE: Order.Kind.ValueType  # 6
+    """the emergency is over"""
 
     KIND_FIELD_NUMBER: _builtins.int
     REASON_FIELD_NUMBER: _builtins.int
@@ -149,6 +157,8 @@ class RunState(_message.Message):
         RUNNING: RunState._Phase.ValueType  # 2
         PAUSED: RunState._Phase.ValueType  # 3
         ENDED: RunState._Phase.ValueType  # 4
+        ESTOPPED: RunState._Phase.ValueType  # 5
+        """emergency stop: all wheels stand until an operator releases them"""
 
     class Phase(_Phase, metaclass=_PhaseEnumTypeWrapper): ...
     PHASE_UNSPECIFIED: RunState.Phase.ValueType  # 0
@@ -156,6 +166,8 @@ class RunState(_message.Message):
     RUNNING: RunState.Phase.ValueType  # 2
     PAUSED: RunState.Phase.ValueType  # 3
     ENDED: RunState.Phase.ValueType  # 4
+    ESTOPPED: RunState.Phase.ValueType  # 5
+    """emergency stop: all wheels stand until an operator releases them"""
 
     PHASE_FIELD_NUMBER: _builtins.int
     TRIAL_FIELD_NUMBER: _builtins.int
@@ -651,6 +663,8 @@ class Status(_message.Message):
     FAILED_EXCHANGES_FIELD_NUMBER: _builtins.int
     REFUSED_READINGS_FIELD_NUMBER: _builtins.int
     REFUSED_COMMANDS_FIELD_NUMBER: _builtins.int
+    PAUSED_FIELD_NUMBER: _builtins.int
+    ESTOPPED_FIELD_NUMBER: _builtins.int
     activity: _builtins.str
     moves: _builtins.int
     tracks: _builtins.int
@@ -668,6 +682,10 @@ class Status(_message.Message):
     """step counters that the wheels cannot have made"""
     refused_commands: _builtins.int
     """commands that came after their deadline"""
+    paused: _builtins.bool
+    """What a person ordered; left out while nobody did."""
+    estopped: _builtins.bool
+    """latched: also over a restart of the robot's process"""
     @_builtins.property
     def proximity(self) -> _containers.RepeatedScalarFieldContainer[_builtins.int]:
         """infra-red echoes ps0 to ps7, 0..4095: 120 is a wall at 5 cm"""
@@ -686,10 +704,12 @@ class Status(_message.Message):
         failed_exchanges: _builtins.int = ...,
         refused_readings: _builtins.int = ...,
         refused_commands: _builtins.int = ...,
+        paused: _builtins.bool = ...,
+        estopped: _builtins.bool = ...,
     ) -> None: ...
     _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
     def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
-    _ClearFieldArgType: _TypeAlias = _typing.Literal["activity", b"activity", "bad_messages", b"bad_messages", "battery_v", b"battery_v", "failed_exchanges", b"failed_exchanges", "moves", b"moves", "pose_age_s", b"pose_age_s", "proximity", b"proximity", "reading_age_s", b"reading_age_s", "refused_commands", b"refused_commands", "refused_readings", b"refused_readings", "tracks", b"tracks"]  # noqa: Y015
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["activity", b"activity", "bad_messages", b"bad_messages", "battery_v", b"battery_v", "estopped", b"estopped", "failed_exchanges", b"failed_exchanges", "moves", b"moves", "paused", b"paused", "pose_age_s", b"pose_age_s", "proximity", b"proximity", "reading_age_s", b"reading_age_s", "refused_commands", b"refused_commands", "refused_readings", b"refused_readings", "tracks", b"tracks"]  # noqa: Y015
     def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 
@@ -876,3 +896,359 @@ class View(_message.Message):
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 
 Global___View: _TypeAlias = View  # noqa: Y015
+
+@_typing.final
+class EmergencyStop(_message.Message):
+    """Emergency stop, by anybody to everybody: every wheel stands at once, and until an operator releases it."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    OPERATOR_FIELD_NUMBER: _builtins.int
+    REASON_FIELD_NUMBER: _builtins.int
+    operator: _builtins.str
+    """who it was: NAME@HOST"""
+    reason: _builtins.str
+    def __init__(
+        self,
+        *,
+        operator: _builtins.str = ...,
+        reason: _builtins.str = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["operator", b"operator", "reason", b"reason"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___EmergencyStop: _TypeAlias = EmergencyStop  # noqa: Y015
+
+@_typing.final
+class OperatorOrder(_message.Message):
+    """What a person orders; asked of the server, which decides and alone tells the robots."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    class _Kind:
+        ValueType = _typing.NewType("ValueType", _builtins.int)
+        V: _TypeAlias = ValueType  # noqa: Y015
+
+    class _KindEnumTypeWrapper(_enum_type_wrapper._EnumTypeWrapper[OperatorOrder._Kind.ValueType], _builtins.type):
+        DESCRIPTOR: _descriptor.EnumDescriptor
+        KIND_UNSPECIFIED: OperatorOrder._Kind.ValueType  # 0
+        PAUSE: OperatorOrder._Kind.ValueType  # 1
+        """finish moves and visits, then stand"""
+        RESUME: OperatorOrder._Kind.ValueType  # 2
+        STOP: OperatorOrder._Kind.ValueType  # 3
+        """the trial ends now, in order"""
+        ESTOP: OperatorOrder._Kind.ValueType  # 4
+        """latch the emergency stop, which everyone has been sent already"""
+        RELEASE: OperatorOrder._Kind.ValueType  # 5
+        """the emergency is over; the run stays paused"""
+        DONE: OperatorOrder._Kind.ValueType  # 6
+        """what a prompt asked for is done"""
+
+    class Kind(_Kind, metaclass=_KindEnumTypeWrapper): ...
+    KIND_UNSPECIFIED: OperatorOrder.Kind.ValueType  # 0
+    PAUSE: OperatorOrder.Kind.ValueType  # 1
+    """finish moves and visits, then stand"""
+    RESUME: OperatorOrder.Kind.ValueType  # 2
+    STOP: OperatorOrder.Kind.ValueType  # 3
+    """the trial ends now, in order"""
+    ESTOP: OperatorOrder.Kind.ValueType  # 4
+    """latch the emergency stop, which everyone has been sent already"""
+    RELEASE: OperatorOrder.Kind.ValueType  # 5
+    """the emergency is over; the run stays paused"""
+    DONE: OperatorOrder.Kind.ValueType  # 6
+    """what a prompt asked for is done"""
+
+    KIND_FIELD_NUMBER: _builtins.int
+    OPERATOR_FIELD_NUMBER: _builtins.int
+    REASON_FIELD_NUMBER: _builtins.int
+    ROBOTS_FIELD_NUMBER: _builtins.int
+    PROMPT_FIELD_NUMBER: _builtins.int
+    kind: Global___OperatorOrder.Kind.ValueType
+    operator: _builtins.str
+    """who gives it: NAME@HOST"""
+    reason: _builtins.str
+    prompt: _builtins.int
+    """DONE: the prompt's number"""
+    @_builtins.property
+    def robots(self) -> _containers.RepeatedScalarFieldContainer[_builtins.str]:
+        """PAUSE, RESUME: these robots only; none named means all"""
+
+    def __init__(
+        self,
+        *,
+        kind: Global___OperatorOrder.Kind.ValueType = ...,
+        operator: _builtins.str = ...,
+        reason: _builtins.str = ...,
+        robots: _abc.Iterable[_builtins.str] | None = ...,
+        prompt: _builtins.int = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["kind", b"kind", "operator", b"operator", "prompt", b"prompt", "reason", b"reason", "robots", b"robots"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___OperatorOrder: _TypeAlias = OperatorOrder  # noqa: Y015
+
+@_typing.final
+class OrderAnswer(_message.Message):
+    """What became of an order."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    ACCEPTED_FIELD_NUMBER: _builtins.int
+    TEXT_FIELD_NUMBER: _builtins.int
+    accepted: _builtins.bool
+    text: _builtins.str
+    """what was done, or why it was refused"""
+    def __init__(
+        self,
+        *,
+        accepted: _builtins.bool = ...,
+        text: _builtins.str = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["accepted", b"accepted", "text", b"text"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___OrderAnswer: _TypeAlias = OrderAnswer  # noqa: Y015
+
+@_typing.final
+class Prompt(_message.Message):
+    """Something that only a person's hand can do, asked for until it is done."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    NUMBER_FIELD_NUMBER: _builtins.int
+    ROBOT_FIELD_NUMBER: _builtins.int
+    TEXT_FIELD_NUMBER: _builtins.int
+    X_M_FIELD_NUMBER: _builtins.int
+    Y_M_FIELD_NUMBER: _builtins.int
+    THETA_RAD_FIELD_NUMBER: _builtins.int
+    WAITS_S_FIELD_NUMBER: _builtins.int
+    number: _builtins.int
+    """counts a trial's prompts from 1"""
+    robot: _builtins.str
+    text: _builtins.str
+    x_m: _builtins.float
+    y_m: _builtins.float
+    theta_rad: _builtins.float
+    waits_s: _builtins.float
+    """since it was asked for"""
+    def __init__(
+        self,
+        *,
+        number: _builtins.int = ...,
+        robot: _builtins.str = ...,
+        text: _builtins.str = ...,
+        x_m: _builtins.float = ...,
+        y_m: _builtins.float = ...,
+        theta_rad: _builtins.float = ...,
+        waits_s: _builtins.float = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["number", b"number", "robot", b"robot", "text", b"text", "theta_rad", b"theta_rad", "waits_s", b"waits_s", "x_m", b"x_m", "y_m", b"y_m"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___Prompt: _TypeAlias = Prompt  # noqa: Y015
+
+@_typing.final
+class RobotStatus(_message.Message):
+    """One robot as the server knows it."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    ROBOT_FIELD_NUMBER: _builtins.int
+    ROLE_FIELD_NUMBER: _builtins.int
+    CONDITION_FIELD_NUMBER: _builtins.int
+    PRESENT_FIELD_NUMBER: _builtins.int
+    ACTIVITY_FIELD_NUMBER: _builtins.int
+    PAUSED_FIELD_NUMBER: _builtins.int
+    ESTOPPED_FIELD_NUMBER: _builtins.int
+    MOVES_FIELD_NUMBER: _builtins.int
+    TRACKS_FIELD_NUMBER: _builtins.int
+    BEST_PATH_FIELD_NUMBER: _builtins.int
+    BATTERY_V_FIELD_NUMBER: _builtins.int
+    POSE_AGE_S_FIELD_NUMBER: _builtins.int
+    HEARD_AGE_S_FIELD_NUMBER: _builtins.int
+    MESSAGES_PER_S_FIELD_NUMBER: _builtins.int
+    READING_AGE_S_FIELD_NUMBER: _builtins.int
+    FAILED_EXCHANGES_FIELD_NUMBER: _builtins.int
+    BAD_MESSAGES_FIELD_NUMBER: _builtins.int
+    HAS_POSE_FIELD_NUMBER: _builtins.int
+    X_M_FIELD_NUMBER: _builtins.int
+    Y_M_FIELD_NUMBER: _builtins.int
+    THETA_RAD_FIELD_NUMBER: _builtins.int
+    robot: _builtins.str
+    role: _builtins.str
+    condition: _builtins.str
+    present: _builtins.bool
+    """its process is connected"""
+    activity: _builtins.str
+    """as it says itself; empty before it has said anything"""
+    paused: _builtins.bool
+    """as was ordered; `activity` says whether it stands"""
+    estopped: _builtins.bool
+    """as it says itself"""
+    moves: _builtins.int
+    tracks: _builtins.int
+    best_path: _builtins.int
+    """moves from start to goal; 0 before the first"""
+    battery_v: _builtins.float
+    """0 if the robot does not say"""
+    pose_age_s: _builtins.float
+    heard_age_s: _builtins.float
+    """since its last message of any kind"""
+    messages_per_s: _builtins.float
+    """over the last seconds"""
+    reading_age_s: _builtins.float
+    """of real robots: since the last good answer over the link"""
+    failed_exchanges: _builtins.int
+    bad_messages: _builtins.int
+    has_pose: _builtins.bool
+    x_m: _builtins.float
+    """where it believes to be"""
+    y_m: _builtins.float
+    theta_rad: _builtins.float
+    def __init__(
+        self,
+        *,
+        robot: _builtins.str = ...,
+        role: _builtins.str = ...,
+        condition: _builtins.str = ...,
+        present: _builtins.bool = ...,
+        activity: _builtins.str = ...,
+        paused: _builtins.bool = ...,
+        estopped: _builtins.bool = ...,
+        moves: _builtins.int = ...,
+        tracks: _builtins.int = ...,
+        best_path: _builtins.int = ...,
+        battery_v: _builtins.float = ...,
+        pose_age_s: _builtins.float = ...,
+        heard_age_s: _builtins.float = ...,
+        messages_per_s: _builtins.float = ...,
+        reading_age_s: _builtins.float = ...,
+        failed_exchanges: _builtins.int = ...,
+        bad_messages: _builtins.int = ...,
+        has_pose: _builtins.bool = ...,
+        x_m: _builtins.float = ...,
+        y_m: _builtins.float = ...,
+        theta_rad: _builtins.float = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["activity", b"activity", "bad_messages", b"bad_messages", "battery_v", b"battery_v", "best_path", b"best_path", "condition", b"condition", "estopped", b"estopped", "failed_exchanges", b"failed_exchanges", "has_pose", b"has_pose", "heard_age_s", b"heard_age_s", "messages_per_s", b"messages_per_s", "moves", b"moves", "paused", b"paused", "pose_age_s", b"pose_age_s", "present", b"present", "reading_age_s", b"reading_age_s", "robot", b"robot", "role", b"role", "theta_rad", b"theta_rad", "tracks", b"tracks", "x_m", b"x_m", "y_m", b"y_m"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___RobotStatus: _TypeAlias = RobotStatus  # noqa: Y015
+
+@_typing.final
+class RecentEvent(_message.Message):
+    """Something that happened, as it stands in the log."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    T_NS_FIELD_NUMBER: _builtins.int
+    SENDER_FIELD_NUMBER: _builtins.int
+    LEVEL_FIELD_NUMBER: _builtins.int
+    NAME_FIELD_NUMBER: _builtins.int
+    TEXT_FIELD_NUMBER: _builtins.int
+    t_ns: _builtins.int
+    sender: _builtins.str
+    """a robot's id, "server" or "tracker" """
+    level: Global___Event.Level.ValueType
+    name: _builtins.str
+    text: _builtins.str
+    def __init__(
+        self,
+        *,
+        t_ns: _builtins.int = ...,
+        sender: _builtins.str = ...,
+        level: Global___Event.Level.ValueType = ...,
+        name: _builtins.str = ...,
+        text: _builtins.str = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["level", b"level", "name", b"name", "sender", b"sender", "t_ns", b"t_ns", "text", b"text"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___RecentEvent: _TypeAlias = RecentEvent  # noqa: Y015
+
+@_typing.final
+class RunStatus(_message.Message):
+    """A run at one moment, for whoever asks."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    EXPERIMENT_FIELD_NUMBER: _builtins.int
+    RUN_ID_FIELD_NUMBER: _builtins.int
+    TRIAL_FIELD_NUMBER: _builtins.int
+    PHASE_FIELD_NUMBER: _builtins.int
+    REASON_FIELD_NUMBER: _builtins.int
+    T_NS_FIELD_NUMBER: _builtins.int
+    ELAPSED_S_FIELD_NUMBER: _builtins.int
+    TIME_LEFT_S_FIELD_NUMBER: _builtins.int
+    MOVES_WANTED_FIELD_NUMBER: _builtins.int
+    MISSING_FIELD_NUMBER: _builtins.int
+    ROBOTS_FIELD_NUMBER: _builtins.int
+    PROMPTS_FIELD_NUMBER: _builtins.int
+    EVENTS_FIELD_NUMBER: _builtins.int
+    experiment: _builtins.str
+    run_id: _builtins.str
+    trial: _builtins.int
+    phase: Global___RunState.Phase.ValueType
+    reason: _builtins.str
+    """why it is paused or stopped: who, and what they said"""
+    t_ns: _builtins.int
+    """the run's time"""
+    elapsed_s: _builtins.float
+    """of the run's time since the trial began"""
+    time_left_s: _builtins.float
+    """of the run's time, by the pace of the slowest learner; 0 while nobody can say"""
+    moves_wanted: _builtins.int
+    @_builtins.property
+    def missing(self) -> _containers.RepeatedScalarFieldContainer[_builtins.str]:
+        """who is waited for"""
+
+    @_builtins.property
+    def robots(self) -> _containers.RepeatedCompositeFieldContainer[Global___RobotStatus]: ...
+    @_builtins.property
+    def prompts(self) -> _containers.RepeatedCompositeFieldContainer[Global___Prompt]: ...
+    @_builtins.property
+    def events(self) -> _containers.RepeatedCompositeFieldContainer[Global___RecentEvent]:
+        """the newest last"""
+
+    def __init__(
+        self,
+        *,
+        experiment: _builtins.str = ...,
+        run_id: _builtins.str = ...,
+        trial: _builtins.int = ...,
+        phase: Global___RunState.Phase.ValueType = ...,
+        reason: _builtins.str = ...,
+        t_ns: _builtins.int = ...,
+        elapsed_s: _builtins.float = ...,
+        time_left_s: _builtins.float = ...,
+        moves_wanted: _builtins.int = ...,
+        missing: _abc.Iterable[_builtins.str] | None = ...,
+        robots: _abc.Iterable[Global___RobotStatus] | None = ...,
+        prompts: _abc.Iterable[Global___Prompt] | None = ...,
+        events: _abc.Iterable[Global___RecentEvent] | None = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["elapsed_s", b"elapsed_s", "events", b"events", "experiment", b"experiment", "missing", b"missing", "moves_wanted", b"moves_wanted", "phase", b"phase", "prompts", b"prompts", "reason", b"reason", "robots", b"robots", "run_id", b"run_id", "t_ns", b"t_ns", "time_left_s", b"time_left_s", "trial", b"trial"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___RunStatus: _TypeAlias = RunStatus  # noqa: Y015

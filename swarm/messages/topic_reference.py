@@ -9,7 +9,9 @@ from swarm.messages.topics import (
     ALIVE,
     LOCKSTEP_DONE,
     LOCKSTEP_TICK,
+    OPERATOR_ORDER,
     RUN_IDENTITY,
+    RUN_STATUS,
     TABLE,
     Delivery,
     Topic,
@@ -20,16 +22,18 @@ _HEAD = """# Everything on the wire
 One line of `swarm/messages/topics.py` says everything about a message. `{robot}` stands for a robot's id.
 Payloads are protobuf messages of `swarm/messages/swarm.proto`; 24 bytes beside each carry the sender's epoch,
 the message's number and the run's time (`swarm/messages/header.py`). A robot receives only what the column
-*to robots* marks: its own pose, its own orders and the run's state.
+*to robots* marks: its own pose, its own orders, the run's state and an emergency stop. Only who stands under
+*from* is believed, a robot only under its own id; [certificates](security.md) make that sure.
 
-| key | message | meaning | rate | delivery | logged | to robots |
-|---|---|---|---|---|---|---|
+| key | message | from | meaning | rate | delivery | logged | to robots |
+|---|---|---|---|---|---|---|---|
 """
 
 _MEANING = {
     Delivery.EVERY: "reliable, the sender waits: learning events and orders",
     Delivery.NEWEST: "reliable while there is room, only the newest counts: poses, commands, states",
     Delivery.BULK: "dropped first: images",
+    Delivery.URGENT: "ahead of everything, said again and again; nobody waits for one who does not listen",
 }
 
 
@@ -45,6 +49,7 @@ def _cells(topic: Topic[Any]) -> tuple[str, ...]:
     return (
         f"`{topic.pattern}`",
         f"`{topic.message.DESCRIPTOR.name}`",
+        topic.sender.value,
         topic.meaning,
         rate,
         topic.delivery.value,
@@ -62,7 +67,9 @@ def _beside_the_table() -> str:
         f"Beside the table: `{ALIVE}` are presence tokens (kind is robot, tracker or server),\n"
         f"`{ACCOUNT}` is the closing account of a process that leaves: how many messages of each key it\n"
         f"has sent. Lockstep simulation uses `{LOCKSTEP_TICK}` and `{LOCKSTEP_DONE}`. The server answers a\n"
-        f"query for `{RUN_IDENTITY}` with the run's id and all settings. None of these is logged.\n"
+        f"query for `{RUN_IDENTITY}` with the run's id and all settings, one for `{RUN_STATUS}` with a\n"
+        f"`RunStatus`, and one for `{OPERATOR_ORDER}`, whose payload is an `OperatorOrder`, with an\n"
+        "`OrderAnswer`. None of these is logged; of every order the log has an event.\n"
     )
 
 

@@ -46,8 +46,6 @@ def runs_of_each(wanted: Iterable[tuple[Condition, int]]) -> dict[Condition, int
 
 def missing_tasks(store: RunStore, runs_of: Mapping[Condition, int]) -> list[Task]:
     """What is not on the disk yet: run 0 of every condition first, so that all can be estimated early."""
-    for condition in runs_of:
-        store.admit(condition)
     return [
         (condition, run)
         for run in range(max(runs_of.values(), default=0))
@@ -88,24 +86,29 @@ STEPS_WORTH_A_PROCESS = 60_000_000
 
 
 def run_all(wanted: Iterable[tuple[Condition, int]], settings: Settings) -> RunStore:
-    """Run what the directory does not hold yet: so many runs of each condition."""
+    """Run what the directory does not hold yet: so many runs of each condition.
+
+    Workers come first: a directory is made only if somebody is there to fill it.
+    """
     runs_of = runs_of_each(wanted)
-    check_sizes(RunStore(settings.root, settings.seed, settings.steps), runs_of, settings.jobs)
-    store = open_store(settings.root, settings.seed, settings.steps)
+    place = settings.root, settings.seed, settings.steps
+    store = RunStore(*place)
+    check_sizes(store, runs_of, settings.jobs)
     tasks = missing_tasks(store, runs_of)
-    if tasks:
-        _run_missing(store, tasks, settings)
-    return store
-
-
-def _run_missing(store: RunStore, tasks: list[Task], settings: Settings) -> None:
+    if not tasks:
+        return open_store(*place, runs_of)
     costs = expected_costs(store.condition(condition) for condition, _ in tasks)
-    steps = sum(costs[condition.name] for condition, _ in tasks)
-    useful_jobs = min(len(tasks), 1 + int(steps / STEPS_WORTH_A_PROCESS))
-    with workers(settings.scheduler, min(settings.jobs, useful_jobs)) as started:
+    with workers(settings.scheduler, min(settings.jobs, _useful_jobs(tasks, costs))) as started:
+        store = open_store(*place, runs_of)
         time_left = TimeLeft(costs, count_by_condition(tasks), started.count)
         with progress_bar(len(tasks), time_left) as finished:
             run_tasks(store, tasks, started, finished)
+    return store
+
+
+def _useful_jobs(tasks: Sequence[Task], costs: Mapping[str, float]) -> int:
+    steps = sum(costs[condition.name] for condition, _ in tasks)
+    return min(len(tasks), 1 + int(steps / STEPS_WORTH_A_PROCESS))
 
 
 def reproduce(figures: Iterable[Figure], settings: Settings) -> dict[str, dict[str, Any]]:

@@ -6,6 +6,7 @@ import dataclasses
 import hashlib
 import json
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
@@ -100,11 +101,16 @@ class RunStore:
         return self._folder(condition) / f"{run:05}.parquet"
 
 
-def open_store(root: Path, seed: int, steps: int | None) -> RunStore:
-    """A new directory, or one that was made with the same settings; any other is refused."""
+def open_store(root: Path, seed: int, steps: int | None, conditions: Iterable[Condition] = ()) -> RunStore:
+    """A new directory with room for these conditions, or one that was made with the same settings; any
+    other is refused.
+    """
     settings = {"made_by": "swarm reproduce", "seed": seed, "steps": steps, "engine": _engine_digest()}
     _settle(root, settings, "choose another --out")
-    return RunStore(root, seed, steps)
+    store = RunStore(root, seed, steps)
+    for condition in conditions:
+        store.admit(condition)
+    return store
 
 
 def _settle(folder: Path, settings: dict[str, Any], cure: str) -> None:

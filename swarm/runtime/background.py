@@ -18,14 +18,13 @@ MOMENT_S = 1.0
 def in_background(call: Callable[[], T], waiting: Callable[[], None]) -> T:
     """The call's result, made on a thread that is left behind if a signal ends the process meanwhile.
 
-    `waiting` is called once if it takes longer than a moment. What the call raises is raised here.
+    `waiting` is called at every moment that it takes longer. What the call raises is raised here.
     """
     attempt = _Attempt(call)
     threading.Thread(target=attempt.make, daemon=True).start()
     try:
-        if not attempt.done.wait(MOMENT_S):
+        while not attempt.done.wait(MOMENT_S):
             waiting()
-            attempt.done.wait()
     except SystemExit as leaving:
         atexit.register(_end, leaving.code)
         raise

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import re
 import socket
+from ipaddress import ip_address
 
 from swarm.errors import UserError
 
+DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+"""Of a server on this machine, at the port that Zenoh has registered."""
 PROTOCOLS = ("tcp", "tls", "quic", "udp", "ws")
 """Over a network; on one machine there is `unixsock-stream/FILE` too."""
 _ADDRESS = re.compile(r"(\[[0-9A-Fa-f:.%]+\]|[^/:\[\]]+):(\d+)([?#].*)?")
@@ -30,7 +33,32 @@ def check_endpoint(endpoint: str) -> None:
     _look_up(endpoint, found[1].strip("[]"))
 
 
-_FORM = "write, for instance, tcp/192.168.1.10:7447"
+def check_protection(endpoint: str, certified: bool, insecure: bool) -> None:
+    """UserError if an endpoint, whose form is checked, would let anybody on the network take part.
+
+    `certified` says that there are certificates, which TLS alone can show.
+    """
+    protocol, _, address = endpoint.partition("/")
+    if protocol in ENCRYPTED:
+        if not certified:
+            raise UserError(f"{endpoint}: {protocol} needs certificates: --credentials DIR, {_MADE}")
+    elif protocol != "unixsock-stream" and not insecure and not _is_loopback(address):
+        raise UserError(
+            f"{endpoint}: whoever reaches it can hear and say everything: write tls/{address} with "
+            f"--credentials DIR ({_MADE}), or --insecure on a network of your own"
+        )
+
+
+ENCRYPTED = ("tls", "quic")
+"""What asks for certificates."""
+_MADE = "as `swarm lab keys LAB.toml` makes them"
+_FORM = "write, for instance, tls/192.168.1.10:7447"
+
+
+def _is_loopback(address: str) -> bool:
+    """Whether only this machine reaches a HOST:PORT, by all addresses that the host has."""
+    host = address.partition("?")[0].rpartition(":")[0].strip("[]")
+    return all(ip_address(found[4][0]).is_loopback for found in socket.getaddrinfo(host, None))
 
 
 def _look_up(endpoint: str, host: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 
 from swarm.clock import WallClock
 from swarm.errors import UserError
@@ -17,9 +18,15 @@ QUESTIONS_IN_SILENCE = 25
 """Five seconds: a server that is there answers the first."""
 
 
-def agreed_run(session: Session, mine: RunIdentity, clock: WallClock) -> str:
-    """The id of the server's run, once the server answers; UserError if it is not the one `mine` tells of."""
+def agreed_run(
+    session: Session, mine: RunIdentity, clock: WallClock, going_on: Callable[[], None] = lambda: None
+) -> str:
+    """The id of the server's run, once the server answers; UserError if it is not the one `mine` tells of.
+
+    `going_on` is called before every question.
+    """
     for question, _ in enumerate(clock.ticks(BETWEEN_QUESTIONS_S)):
+        going_on()
         if answers := session.ask(RUN_IDENTITY, ANSWER_WITHIN_S):
             return compared(answers[0], mine)
         if question == QUESTIONS_IN_SILENCE:

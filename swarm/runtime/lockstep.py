@@ -81,6 +81,9 @@ class LockstepNode:
         header = Header(EPOCH, self._sequencer.following(key), self._t_ns)
         self._published.append(pack_item(key, header, message.SerializeToString()))
 
+    def lag_s(self) -> float:
+        return 0.0
+
     def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:  # noqa: ARG002
         """All have the same time in a lockstep."""
         return 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Protocol, TypeVar
 
@@ -12,18 +13,24 @@ from swarm.errors import RunFailedError
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
-from swarm.messages.topics import ACCOUNT, Delivery, Topic
+from swarm.messages.topics import ACCOUNT, Delivery, Topic, topic_of
 from swarm.runtime.account import pack_account
 from swarm.runtime.clock_offset import ClockOffset, described
+from swarm.runtime.link_lag import LinkLag
 from swarm.runtime.liveliness import ALIVE_SERVER, ServerWatch
+from swarm.runtime.senders import BelievedSenders
 from swarm.runtime.spool import Spool
 from swarm.runtime.subscription import Subscription
-from swarm.runtime.zenoh_session import Inbox, Publisher, Session
+from swarm.runtime.zenoh_session import Inbox, Publisher, Session, WireSample
 
 M = TypeVar("M", bound=Message)
 
 Step = Callable[[int], None]
 """What a process does at a tick, given the run's time in nanoseconds."""
+
+
+HELD = 64
+"""Messages from senders that nobody knows yet: a presence may come a moment after them."""
 
 
 class Node(Protocol):
@@ -42,6 +49,9 @@ class Node(Protocol):
 
     def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:
         """What to add to the times that a topic's sender writes, to have them on this process's clock."""
+
+    def lag_s(self) -> float:
+        """Real seconds by which this process is behind what others send; 0 where time is a message."""
 
     def run(self, step: Step) -> None:
         """Step at every tick, until the run ends.
@@ -79,26 +89,30 @@ class LivePublisher:
         self._sequencer = Sequencer()
         self._publishers: dict[str, Publisher] = {}
 
-    def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
-        """Send a message under the topic's key, of a robot if it has one."""
+    def publish(self, topic: Topic[M], message: M, robot: str = "") -> Item:
+        """Send a message under the topic's key, of a robot if it has one; returns what was sent."""
         key = topic.key(robot)
         header = Header(self.epoch, self._sequencer.following(key), self._clock.now_ns())
         item = Item(key, header, message.SerializeToString())
-        if self._spool and topic.delivery is Delivery.EVERY:
+        if self._spool and topic.is_recovered:
             self._spool.put(item)
-        self._put(item, topic.delivery)
+        self._put(item, topic)
+        return item
 
     def repeat(self, items: Iterable[Item]) -> None:
         """Send what an earlier start of this process has sent, as it was, for a server that missed it."""
         for item in items:
-            self._put(item, Delivery.EVERY)
+            found = topic_of(item.key)
+            if found:
+                self._put(item, found[0])
 
-    def _put(self, item: Item, delivery: Delivery) -> None:
+    def _put(self, item: Item, topic: Topic[Any]) -> None:
         if item.key not in self._publishers:
-            keeps = delivery is Delivery.EVERY
             session = self._session
             self._publishers[item.key] = (
-                session.keeping_publisher(item.key) if keeps else session.publisher(item.key, delivery)
+                session.keeping_publisher(item.key, topic.most_waiting)
+                if topic.is_recovered
+                else session.publisher(item.key, topic.delivery)
             )
         self._publishers[item.key].put(item.payload, attachment=item.header.pack())
 
@@ -131,27 +145,32 @@ class LiveNode:
         epoch: int,
         run_id: str = "",
         say: Callable[[str], None] = lambda text: None,  # noqa: ARG005
+        going_on: Callable[[], None] = lambda: None,
         spool: Spool | None = None,
     ) -> None:
         self.run_id = run_id
+        self._going_on = going_on
         self._session = session
         self._say = say
         self._server = ServerWatch(session.presence_watch(ALIVE_SERVER), say)
+        self._senders = BelievedSenders(session)
         self._clocks: dict[str, tuple[int, ClockOffset]] = {}
         self._clock = clock
         self._period_s = period_s
         self._live = LivePublisher(session, clock, epoch, spool)
         if spool:
             self._live.repeat(spool.left)
-        self._inboxes: list[tuple[Inbox, Subscription[Any]]] = []
+        self._lag = LinkLag(clock.speed)
+        self._inboxes: list[tuple[Inbox, Subscription[Any], deque[WireSample]]] = []
         self.keys_received: set[str] = set()
         self._run_states = self.subscribe(topics.RUN_STATE)
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
         """A subscription filled at every tick; `*` in a key keeps every message, since it holds many keys."""
         subscription = Subscription(topic)
+        self._senders.follow(topic)
         inbox = self._session.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
-        self._inboxes.append((inbox, subscription))
+        self._inboxes.append((inbox, subscription, deque(maxlen=HELD)))
         return subscription
 
     def publish(self, topic: Topic[M], message: M, robot: str = "") -> None:
@@ -161,12 +180,16 @@ class LiveNode:
         known = self._clocks.get(topic.key(robot))
         return known[1].ns if known else 0
 
+    def lag_s(self) -> float:
+        return self._lag.seconds(self._clock.now_ns())
+
     def give_account(self, name: str) -> None:
         """Tell the server, as the last thing, how many messages of each key this process has sent."""
         self._live.give_account(name)
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):
+            self._going_on()
             self._server.look()
             self._take_in()
             states = [state.message for state in self._run_states.take()]
@@ -185,16 +208,28 @@ class LiveNode:
             )
 
     def _take_in(self) -> None:
-        for inbox, subscription in self._inboxes:
-            for sample in inbox.poll():
+        arrived = [inbox.poll() for inbox, _, _ in self._inboxes]
+        self._senders.look()
+        for samples, (_, subscription, held) in zip(arrived, self._inboxes, strict=True):
+            waiting = [*held, *samples]
+            held.clear()
+            for sample in waiting:
                 self.keys_received.add(sample.key)
                 header = Header.unpack(sample.attachment)
-                subscription.put(sample.key, self._on_own_clock(sample.key, header), sample.payload)
+                if header and not self._believes(sample.key, header):
+                    held.append(sample)
+                else:
+                    subscription.put(sample.key, self._on_own_clock(sample.key, header), sample.payload)
+
+    def _believes(self, key: str, header: Header) -> bool:
+        found = topic_of(key)
+        return found is None or self._senders.believes(*found, header.epoch)
 
     def _on_own_clock(self, key: str, header: Header | None) -> Header | None:
         """A header whose time is on this clock. (A sender's clock cannot step: only its epochs differ.)"""
         if header is None:
             return None
+        self._lag.heard(header.epoch, header.t_ns, self._clock.now_ns())
         epoch, clock = self._clocks.get(key, (0, None))
         if clock is None or epoch != header.epoch:
             clock = ClockOffset(self._clock.speed, can_step=False)

@@ -13,7 +13,7 @@ import socket
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from functools import partial
@@ -24,6 +24,8 @@ from swarm.clock import scaled_clock, unix_clock
 from swarm.config import arguments as values
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
+from swarm.messages.topics import EARLIER
+from swarm.runtime.endpoint import DEFAULT_ENDPOINT
 from swarm.runtime.handshake import agreed_run
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import NO_IDENTITY, Presence, claim
@@ -31,9 +33,9 @@ from swarm.runtime.lockstep import EPOCH, LockstepNode, patient
 from swarm.runtime.node import LiveNode, Node
 from swarm.runtime.spool import Spool
 from swarm.runtime.zenoh_session import Session, SessionSettings
+from swarm.services.notification import ServiceManager
 from swarm.version import version_text
 
-DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 PR_SET_PDEATHSIG = 1
 """From linux/prctl.h: the signal that a process gets when its parent ends."""
 LEAVE_WITHIN_S = 5.0
@@ -71,12 +73,10 @@ def add_common_arguments(parser: argparse.ArgumentParser) -> None:
     """The experiment, the server, and how time passes."""
     parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="what is run")
     parser.add_argument(
-        "--connect", default=DEFAULT_ENDPOINT, metavar="tcp/HOST:PORT", help="the server (%(default)s)"
-    )
-    parser.add_argument(
-        "--zenoh-config", type=Path, metavar="FILE", help="Zenoh settings for TLS, users and access control"
+        "--connect", default=DEFAULT_ENDPOINT, metavar="tls/HOST:PORT", help="the server (%(default)s)"
     )
     parser.set_defaults(state=None)
+    add_protection_arguments(parser)
     simulated = parser.add_argument_group("simulation", "the server gives these to the processes it starts")
     simulated.add_argument("--process", default="", help="the name of this process in a lockstep run")
     simulated.add_argument(
@@ -88,6 +88,28 @@ def add_common_arguments(parser: argparse.ArgumentParser) -> None:
     simulated.add_argument("--trial", type=values.trial, default=0, help="the number of the trial, from 0")
     simulated.add_argument("--seed", type=values.seed, default=None, help="in place of the experiment's")
     simulated.add_argument("--moves", type=values.moves, default=None, help="in place of the experiment's")
+
+
+def add_protection_arguments(parser: argparse.ArgumentParser) -> None:
+    """How a process shows who it is, and whether it need not."""
+    parser.add_argument(
+        "--credentials", type=Path, metavar="DIR", help="its folder of the keys that `swarm lab keys` makes"
+    )
+    parser.add_argument(
+        "--insecure", action="store_true", help="without certificates although other machines can connect"
+    )
+    parser.add_argument("--zenoh-config", type=Path, metavar="FILE", help="more settings of Zenoh's (JSON5)")
+
+
+def session_settings(arguments: argparse.Namespace, endpoint: str, **more: Any) -> SessionSettings:
+    """Settings of the session that a command line asks for."""
+    return SessionSettings(
+        endpoint,
+        config=arguments.zenoh_config,
+        credentials=arguments.credentials,
+        insecure=arguments.insecure,
+        **more,
+    )
 
 
 def load_experiment(arguments: argparse.Namespace) -> Experiment:
@@ -105,24 +127,28 @@ def joined(
     part in no run, and needs none.
     """
     epoch = EPOCH if arguments.lockstep else time.time_ns()
-    settings = SessionSettings(arguments.connect, config=arguments.zenoh_config)
+    settings = session_settings(arguments, arguments.connect)
     if arguments.lockstep:
         settings = patient(settings)
-    say = _say_nothing if arguments.supervised else _say
+    manager = ServiceManager.of_environment()
+    manager.ready()
+    say = _say_nothing if arguments.supervised else partial(_say_and_tell, manager)
     shown = str(identity.fingerprint) if identity else NO_IDENTITY
-    with Session(settings, partial(say, f"waiting for the server at {settings.endpoint}")) as session:
+    waiting = Waiting(manager, partial(say, f"waiting for the server at {settings.endpoint}"))
+    with Session(settings, waiting.moment) as session:
         for name in names:
             claim(session, Presence(kind, name, socket.gethostname(), epoch, shown))
         if arguments.lockstep:
             yield LockstepNode(session, arguments.process)
         else:
-            run_id = agreed_run(session, identity, unix_clock()) if identity else ""
+            going_on = manager.going_on
+            run_id = agreed_run(session, identity, unix_clock(), going_on) if identity else ""
             say(f"connected to the server at {settings.endpoint}")
             simulated = arguments.started_ns
             clock = scaled_clock(simulated, arguments.speed) if simulated else unix_clock()
             presence = Presence(kind, "", socket.gethostname(), epoch, shown)
             spool = _spool(arguments, session, presence, names, run_id)
-            node = LiveNode(session, clock, period_s, epoch, run_id, say, spool)
+            node = LiveNode(session, clock, period_s, epoch, run_id, say, going_on, spool)
             try:
                 yield node
             finally:
@@ -135,12 +161,13 @@ def _spool(
     arguments: argparse.Namespace, session: Session, presence: Presence, names: list[str], run_id: str
 ) -> Spool | None:
     """What this process keeps on its disk if it has a place there; it speaks for its earlier starts, too."""
-    if not (arguments.state and run_id):
+    if not (arguments.state and run_id and presence.kind in EARLIER):
         return None
     spool = Spool(arguments.state, names[0], run_id, _say)
     for name in names:
         for epoch in spool.epochs:
-            session.declare_alive(replace(presence, name=name, epoch=epoch).key)
+            earlier = replace(presence, kind=EARLIER[presence.kind], name=name, epoch=epoch)
+            session.declare_alive(earlier.key)
     return spool
 
 
@@ -162,6 +189,27 @@ def _await_parents_end() -> None:
     os.kill(os.getpid(), signal.SIGTERM)
     threading.Event().wait(LEAVE_WITHIN_S)
     os._exit(1)
+
+
+class Waiting:
+    """For a server that is not there yet: said once, while the service's manager hears that it goes on."""
+
+    def __init__(self, manager: ServiceManager, say: Callable[[], None]) -> None:
+        self._manager = manager
+        self._say = say
+        self._said = False
+
+    def moment(self) -> None:
+        """One more moment has passed."""
+        self._manager.going_on()
+        if not self._said:
+            self._said = True
+            self._say()
+
+
+def _say_and_tell(manager: ServiceManager, text: str) -> None:
+    _say(text)
+    manager.about(text)
 
 
 def _say(text: str) -> None:

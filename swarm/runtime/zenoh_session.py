@@ -10,16 +10,17 @@ import ctypes
 import json
 import os
 import threading
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
+from swarm.access.credentials import zenoh_values
 from swarm.errors import UserError
 from swarm.messages.topics import Delivery
 from swarm.runtime.background import in_background
-from swarm.runtime.endpoint import check_endpoint
+from swarm.runtime.endpoint import check_endpoint, check_protection
 
 if TYPE_CHECKING:
     import zenoh
@@ -31,13 +32,15 @@ ONE_THREAD = (
 """Three threads in place of seven, and a lockstep of ten processes a fifth faster (measured)."""
 QUEUE_DEPTH = 65_536
 """Messages; fifty robots send some thousand a second: room for more than half a minute."""
+NEWEST_KEPT = 64
+"""Of a key of which the newest counts: were it one, who sends what nobody believes would push it out."""
 MOST_AT_ONCE = 4096
 """Messages of an inbox in one poll: some tenths of a second of work on a board, then the others' turn."""
+QUESTIONS_WAITING = 256
+"""Of one key: a main loop answers them ten times a second; who asks more often waits for Zenoh."""
 LARGEST_MESSAGE_BYTES = 16 << 20
 """What a session takes in: thrice an exchange of 1000 robots in lockstep. Zenoh would put 1 GiB together
 before anybody could refuse it."""
-KEPT = 10_000
-"""Messages of a key that their sender keeps: five hours of a robot's moves, some megabytes."""
 HEARTBEAT_S = 0.5
 """After a publisher's last message it says so often, for a while, what its number was."""
 WAIT_FOR_ROOM_S = 5.0
@@ -48,9 +51,11 @@ WAIT_FOR_ROOM_S = 5.0
 class SessionSettings:
     """How a process reaches the others.
 
-    The hub listens on `endpoint` (tcp/HOST:PORT or, on one machine, unixsock-stream/FILE) and routes;
-    clients connect to it and keep trying.
-    `config` is a Zenoh configuration file (JSON5) whose values come first, for TLS and access control.
+    The hub listens on `endpoint` (tls/HOST:PORT or, on one machine, tcp/127.0.0.1:PORT or
+    unixsock-stream/FILE) and routes; clients connect to it and keep trying.
+    `config` is a Zenoh configuration file (JSON5) whose values come first. `credentials` is an identity's
+    folder, as `swarm lab keys` makes it; without it nothing that another machine can reach is opened unless
+    `insecure` says so. `limits` are more of Zenoh's settings by their place, for a hub that strangers reach.
     """
 
     endpoint: str
@@ -59,6 +64,9 @@ class SessionSettings:
     """Silence after which a peer counts as gone: long for a gap in the radio, short for a person."""
     wait_for_hub: bool = True
     config: Path | None = None
+    credentials: Path | None = None
+    insecure: bool = False
+    limits: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +98,35 @@ class Inbox:
         return samples
 
 
+class Question:
+    """What somebody asks under a key, until it is answered."""
+
+    def __init__(self, key: str, query: zenoh.Query) -> None:
+        self._key = key
+        self._query = query
+        self.payload = bytes(query.payload) if query.payload is not None else b""
+
+    def answer(self, payload: bytes) -> None:
+        """Answer it, once."""
+        with self._query:
+            self._query.reply(self._key, payload)
+
+
+class Questions:
+    """What is asked under one key, polled by the main loop."""
+
+    def __init__(self, key: str, queryable: zenoh.Queryable[zenoh.handlers.Handler[zenoh.Query]]) -> None:
+        self._key = key
+        self._queryable = queryable
+
+    def poll(self) -> list[Question]:
+        """What has been asked since the last call, in order."""
+        asked: list[Question] = []
+        while len(asked) < MOST_AT_ONCE and (query := self._queryable.try_recv()) is not None:
+            asked.append(Question(self._key, query))
+        return asked
+
+
 class PresenceWatch:
     """The presence keys that have appeared and vanished, polled by the main loop."""
 
@@ -118,11 +155,15 @@ class Publisher:
         """Zenoh's own, without a call in between, which would show in the pace of a lockstep."""
 
 
+ZENOH_SAYS = "error,zenoh::api::session=off"
+"""A session that closes calls it an error that messages were still on their way to it."""
+
+
 class Session:
     """A Zenoh session, closed at the end of its block or of the process.
 
-    To open one may take for ever where the server is not there yet: `waiting` is called once if it takes
-    longer than a moment, and signals are obeyed meanwhile.
+    To open one may take for ever where the server is not there yet: `waiting` is called once a second
+    meanwhile, and signals are obeyed.
     """
 
     def __init__(self, settings: SessionSettings, waiting: Callable[[], None] = lambda: None) -> None:
@@ -130,7 +171,8 @@ class Session:
         import zenoh
         import zenoh.ext
 
-        zenoh.init_log_from_env_or("error")
+        zenoh.init_log_from_env_or(ZENOH_SAYS)
+        self.endpoint = settings.endpoint
         self._zenoh = zenoh
         self._tokens: list[zenoh.LivelinessToken] = []
         self._listening: list[zenoh.Subscriber[None]] = []
@@ -159,39 +201,46 @@ class Session:
     def publisher(self, key: str, delivery: Delivery) -> Publisher:
         """A publisher with the delivery's guarantees."""
         control = self._zenoh.CongestionControl
-        priority = self._zenoh.Priority
+        priorities = {
+            Delivery.BULK: self._zenoh.Priority.DATA_LOW,
+            Delivery.URGENT: self._zenoh.Priority.REAL_TIME,
+        }
         return Publisher(
             self._session.declare_publisher(
                 key,
                 congestion_control=control.BLOCK if delivery is Delivery.EVERY else control.DROP,
-                priority=priority.DATA_LOW if delivery is Delivery.BULK else priority.DATA,
+                priority=priorities.get(delivery, self._zenoh.Priority.DATA),
+                express=delivery is Delivery.URGENT,
             )
         )
 
-    def keeping_publisher(self, key: str) -> Publisher:
-        """A publisher of what must not be lost: it keeps the newest, for a `recovering_inbox`."""
+    def keeping_publisher(self, key: str, depth: int) -> Publisher:
+        """A publisher of what must not be lost: it keeps the newest, for a `recovering_inbox`.
+
+        How they come to terms is Zenoh's own, under the keys of `RECOVERY`.
+        """
         ext = self._zenoh.ext
         return Publisher(
             ext.declare_advanced_publisher(
                 self._session,
                 key,
                 congestion_control=self._zenoh.CongestionControl.BLOCK,
-                cache=ext.CacheConfig(max_samples=KEPT),
+                cache=ext.CacheConfig(max_samples=depth),
                 sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT_S),
                 publisher_detection=True,
             )
         )
 
-    def recovering_inbox(self, key: str) -> Inbox:
-        """Subscribe to a key expression, and ask for what was missed of who keeps it: sent before this began,
-        or while the link was down. A publisher's samples come in order.
+    def recovering_inbox(self, key: str, depth: int) -> Inbox:
+        """As `inbox_of_others`, and what was missed is asked for of who keeps it: sent before this began, or
+        while the link was down. A publisher's samples come in order.
         """
         ext = self._zenoh.ext
-        channel: zenoh.handlers.FifoChannel[zenoh.Sample] = self._zenoh.handlers.FifoChannel(QUEUE_DEPTH)
         subscriber = ext.declare_advanced_subscriber(
             self._session,
             key,
-            channel,
+            self._zenoh.handlers.RingChannel(depth),
+            allowed_origin=self._zenoh.Locality.REMOTE,
             history=ext.HistoryConfig(detect_late_publishers=True),
             recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
         )
@@ -201,12 +250,24 @@ class Session:
     def inbox(self, key: str, delivery: Delivery, *, keep_all: bool = False) -> Inbox:
         """Subscribe to a key expression.
 
-        Of a `NEWEST` delivery one sample is kept, unless `keep_all` says that the expression holds many keys.
+        Of a `NEWEST` delivery the last few samples are kept, unless `keep_all` says that the expression
+        holds many keys.
         """
         handlers = self._zenoh.handlers
         newest_only = delivery is Delivery.NEWEST and not keep_all
-        channel = handlers.RingChannel(1) if newest_only else handlers.FifoChannel(QUEUE_DEPTH)
+        channel = handlers.RingChannel(NEWEST_KEPT) if newest_only else handlers.FifoChannel(QUEUE_DEPTH)
         return Inbox(self._session.declare_subscriber(key, channel))
+
+    def inbox_of_others(self, key: str, depth: int) -> Inbox:
+        """The newest messages that other sessions send under a key, `depth` of them: who sends more than is
+        taken in loses its own older ones, and nobody waits."""
+        return Inbox(
+            self._session.declare_subscriber(
+                key,
+                self._zenoh.handlers.RingChannel(depth),
+                allowed_origin=self._zenoh.Locality.REMOTE,
+            )
+        )
 
     def on_arrival(self, key: str, receive: Callable[[bytes], None]) -> None:
         """Call `receive` with every payload, for as long as this session lives.
@@ -240,9 +301,15 @@ class Session:
         """Answer everyone who asks for a key with the same bytes, for as long as this session lives."""
         self._answering.append(self._session.declare_queryable(key, lambda query: query.reply(key, payload)))
 
-    def ask(self, key: str, within_s: float) -> list[bytes]:
+    def questions(self, key: str) -> Questions:
+        """What others ask under a key, to be answered from the main loop."""
+        channel: zenoh.handlers.FifoChannel[zenoh.Query] = self._zenoh.handlers.FifoChannel(QUESTIONS_WAITING)
+        return Questions(key, self._session.declare_queryable(key, channel))
+
+    def ask(self, key: str, within_s: float, payload: bytes | None = None) -> list[bytes]:
         """What those answer who know the key."""
-        replies = self._session.get(key, target=self._zenoh.QueryTarget.ALL, timeout=within_s)
+        target = self._zenoh.QueryTarget.ALL
+        replies = self._session.get(key, target=target, timeout=within_s, payload=payload)
         return [bytes(reply.ok.payload) for reply in replies if reply.ok is not None]
 
     def alive(self, key: str) -> list[str]:
@@ -260,6 +327,7 @@ def _opened(settings: SessionSettings) -> zenoh.Session:
     import zenoh
 
     check_endpoint(settings.endpoint)
+    check_protection(settings.endpoint, bool(settings.credentials or settings.config), settings.insecure)
     return zenoh.open(_config(settings))
 
 
@@ -285,6 +353,7 @@ def _config(settings: SessionSettings) -> zenoh.Config:
 
     config = _config_of(settings.config) if settings.config else zenoh.Config()
     patience_s = max(settings.lease_s, WAIT_FOR_ROOM_S)
+    secret = zenoh_values(settings.credentials, settings.hub) if settings.credentials else {}
     values: dict[str, object] = {
         "mode": "router" if settings.hub else "client",
         "listen/endpoints": [settings.endpoint] if settings.hub else [],
@@ -299,6 +368,8 @@ def _config(settings: SessionSettings) -> zenoh.Config:
         "timestamping/enabled": True,
         "transport/link/tx/lease": round(settings.lease_s * 1000),
         "transport/link/tx/queue/congestion_control/block/wait_before_close": round(patience_s * 1e6),
+        **settings.limits,
+        **secret,
     }
     for key, value in values.items():
         config.insert_json5(key, json.dumps(value))

@@ -100,16 +100,46 @@ def test_its_moves_follow_each_other_through_the_grid(rig: Rig) -> None:
         assert move.next_state == (move.state if entered is None else entered)
 
 
-def test_a_pause_lets_it_finish_its_move_and_a_run_lets_it_go_on(rig: Rig) -> None:
+def test_a_pause_lets_it_finish_its_move_and_it_goes_on_when_told(rig: Rig) -> None:
     before = of(rig.run(30), "move")[-1].number
     rig.order(pb.Order.PAUSE)
     paused = rig.run(30)
     assert len(of(paused, "move")) <= 1
     assert stands(paused)
-    rig.order(pb.Order.RUN)
+    assert of(paused, "status")[-1].paused
+    rig.order(pb.Order.RESUME)
     numbers = [move.number for move in of(rig.run(30), "move")]
     assert numbers[0] - before <= 2
     assert len(numbers) > 5
+
+
+def test_a_visit_ordered_meanwhile_does_not_end_a_pause(rig: Rig) -> None:
+    rig.order(pb.Order.PAUSE)
+    rig.order(pb.Order.RUN)
+    assert of(rig.run(20), "move") == []
+
+
+def test_an_emergency_stops_it_in_mid_move_until_it_is_released(rig: Rig) -> None:
+    rig.run(30)
+    while stands(rig.run(0.1)):
+        pass
+    rig.node.publish(topics.ESTOP, pb.EmergencyStop(operator="anna@lab"))
+    stopped = rig.run(20)
+    assert stands(stopped[:5]), "within the first tick, whatever the run's state says"
+    assert of(stopped, "move") == []
+    assert (of(stopped, "status")[-1].activity, of(stopped, "status")[-1].estopped) == ("estopped", True)
+    rig.order(pb.Order.RUN)
+    rig.order(pb.Order.RESUME)
+    assert of(rig.run(10), "move") == [], "no other order releases it"
+    rig.order(pb.Order.RELEASE)
+    assert of(rig.run(10, pb.RunState.PAUSED), "move") == []
+    assert len(of(rig.run(30), "move")) > 5
+
+
+def test_an_emergency_that_only_the_server_tells_of_stops_it_too(rig: Rig) -> None:
+    rig.run(30)
+    assert stands(rig.run(2, pb.RunState.ESTOPPED))
+    assert of(rig.run(10), "move") == [], "the run's state alone does not release it"
 
 
 def test_it_stands_when_the_conductor_falls_silent(rig: Rig) -> None:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
 
 from server.hubs.lockstep import LockstepHub
 from server.processes.supervisor import ProcessSpec, Supervisor
@@ -27,6 +30,7 @@ LAB = (
     "rich",
     "dask",
     "distributed",
+    "cv2",
 )
 REFUSE_LAB = f"""
 import sys
@@ -69,6 +73,26 @@ def test_the_base_install_says_what_the_server_needs() -> None:
     assert (done.returncode, done.stdout) == (2, "")
     assert len(done.stderr.splitlines()) == 1
     assert done.stderr.endswith("install it with pip install 'swarm-runtime[lab]'\n")
+
+
+@pytest.mark.parametrize(
+    ("module", "words"),
+    [
+        ("robot_agent", ("calibrate", "camera", "--frames", ".")),
+        ("tracker_bridge", ("detect", "picture.png")),
+        ("robot_agent", ("expert.toml", "--robot", "imitator")),
+    ],
+)
+def test_the_base_install_says_what_pictures_need(
+    tmp_path: Path, module: str, words: tuple[str, ...]
+) -> None:
+    (tmp_path / "expert.toml").write_bytes((ROOT / "deploy" / "sim" / "expert.toml").read_bytes())
+    command = [sys.executable, "-c", BASE_INSTALL, module, *words]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1), done.stderr
+    assert "cv2" in done.stderr
+    assert "pip install 'swarm-runtime[vision]'" in done.stderr
 
 
 def test_the_base_install_runs_an_agent_for_ticks(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from server.reporter import Reporter
 from swarm.config.experiment import Experiment
 from swarm.messages.topics import Topic
 from swarm.runtime.identity import RunIdentity
+from tests.support.controls import control_of
 from tests.support.swarm_runs import experiment_text, write_experiment
 
 
@@ -31,9 +32,9 @@ class Run:
         console = Console(file=self._shown, force_terminal=terminal, width=120)
         self.progress = RunProgress(experiment, console, lambda: self.now_s)
         reporter = Reporter(self)
-        self.conductor = Conductor(
-            experiment, RunIdentity.of(experiment, 2), reporter, SimulatedCarrier(reporter)
-        )
+        identity, carrier = RunIdentity.of(experiment, 2), SimulatedCarrier(reporter)
+        control = control_of(experiment, reporter)
+        self.conductor = Conductor(experiment, identity, reporter, carrier, control)
 
     def publish(self, topic: Topic[Any], message: Message, robot: str = "") -> None:
         """A conductor says something; nobody listens."""

@@ -22,6 +22,7 @@ class LocalNode:
 
     def __init__(self) -> None:
         self.t_ns = 0
+        self.behind_s = 0.0
         self.published: list[tuple[str, Any]] = []
         self.keys_received: set[str] = set()
         self._subscriptions: list[tuple[str, Subscription[Any]]] = []
@@ -42,6 +43,9 @@ class LocalNode:
 
     def offset_ns(self, topic: Topic[Any], robot: str = "") -> int:  # noqa: ARG002
         return 0
+
+    def lag_s(self) -> float:
+        return self.behind_s
 
     def run(self, step: Step) -> None:
         while True:

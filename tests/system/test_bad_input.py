@@ -111,6 +111,13 @@ def test_an_unknown_tracker_is_named(tmp_path: Path) -> None:
     assert "'vicom'" in refused("tracker_bridge", file)
 
 
+def test_a_lockstep_waits_for_no_real_tracker(tmp_path: Path) -> None:
+    file = write_experiment(tmp_path, experiment_text(extra='[tracker]\nbackend = "vicon"'))
+    line = refused("server", file, "--out", tmp_path / "run")
+    assert "'vicon', which has a time of its own: a simulation needs \"sim\"" in line
+    assert not (tmp_path / "run").exists()
+
+
 def test_a_second_agent_of_one_id_is_refused_and_both_hosts_are_named(experiment: Path) -> None:
     endpoint = free_endpoint()
     with Session(SessionSettings(endpoint, hub=True)) as hub, Session(SessionSettings(endpoint)) as first:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from swarm.config.experiment import Experiment
-from swarm.config.reference import markdown
+from swarm.config.laboratory import Laboratory
+from swarm.config.reference import experiment_reference, laboratory_reference
 
 ROOT = Path(__file__).parents[2]
 PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
@@ -24,11 +26,14 @@ def snippets(page: Path, language: str) -> list[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
-def test_every_experiment_shown_can_be_loaded(page: Path, tmp_path: Path) -> None:
+def test_every_experiment_and_laboratory_shown_can_be_loaded(page: Path, tmp_path: Path) -> None:
     for number, text in enumerate(snippets(page, "toml")):
         file = tmp_path / f"{number}.toml"
         file.write_text(text)
-        assert Experiment.load(file).learners
+        if "[laboratory]" in text:
+            assert Laboratory.load(file).robot
+        else:
+            assert Experiment.load(file).learners
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
@@ -58,8 +63,12 @@ def test_the_tree_shown_is_that_of_the_packages() -> None:
     assert folders_shown(ROOT / "docs" / "architecture.md") == {name_of(folder) for folder in packages}
 
 
-def test_the_experiment_files_reference_is_that_of_the_code() -> None:
-    assert (ROOT / "docs" / "experiment-file.md").read_text().endswith(markdown())
+@pytest.mark.parametrize(
+    ("page", "reference"),
+    [("experiment-file.md", experiment_reference), ("laboratory-file.md", laboratory_reference)],
+)
+def test_the_files_references_are_those_of_the_code(page: str, reference: Callable[[], str]) -> None:
+    assert (ROOT / "docs" / page).read_text().endswith(reference())
 
 
 @pytest.mark.parametrize("file", sorted((ROOT / "deploy" / "sim").glob("*.toml")), ids=lambda file: file.name)

@@ -61,7 +61,7 @@ class LiveSwarm:
         self.processes: list[subprocess.Popen[bytes]] = []
         experiment = Experiment.load(self.file)
         self.identity = RunIdentity.of(experiment, 0, "0123456789ab")
-        self.hub = LiveHub(self.session, clock, experiment, self.identity, self.check, print)
+        self.hub = LiveHub(self.session, clock, experiment, self.identity, self.check, print, epoch=1)
         self._batches = 0
 
     def start(self, module: str, *arguments: str, ahead_s: float = 0.0) -> subprocess.Popen[bytes]:

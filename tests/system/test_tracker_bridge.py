@@ -10,8 +10,10 @@ from typing import Any
 
 import pytest
 
+from swarm.config.experiment import Experiment
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.runtime.identity import RunIdentity
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 from tests.support.natnet_capture import NATNET
@@ -77,13 +79,16 @@ def test_watch_shows_a_table_the_arena_and_the_tracks(experiment: Path, tmp_path
 def test_poses_of_an_emulated_swarm_reach_the_swarm(experiment: Path) -> None:
     endpoint = free_endpoint()
     seen: dict[str, pb.Pose] = {}
+    identity = RunIdentity.of(Experiment.load(experiment), 0, "a run")
     with Session(SessionSettings(endpoint, hub=True)) as session:
+        session.answer(topics.RUN_IDENTITY, identity.pack())
         inbox = session.inbox(topics.POSE.key(), topics.POSE.delivery, keep_all=True)
         with (
             started("emulate", system_of(experiment), experiment) as emulator,
             started(experiment, "--connect", endpoint) as bridge,
         ):
             while len(seen) < 3:
+                assert bridge.poll() is None, "it left"
                 seen |= {sample.key: pb.Pose.FromString(sample.payload) for sample in inbox.poll()}
             bridge.terminate()
             emulator.terminate()
@@ -107,7 +112,7 @@ def test_a_robot_learns_by_poses_from_an_emulated_system(experiment: Path, tmp_p
         for robot in ("expert", "imitator", "loner")
     ]
     others = [
-        started(file, "--connect", endpoint),
+        started(file, *common),
         started("emulate", system_of(file), file, "--connect", endpoint),
     ]
     output, _ = server.communicate()

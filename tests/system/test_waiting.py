@@ -90,7 +90,15 @@ class Server:
         claim(self._session, Presence("server", "server", "here", epoch))
         settings = Experiment.load(experiment)
         identity = RunIdentity.of(settings, 0, RUN_ID)
-        self.hub = LiveHub(self._session, unix_clock(), settings, identity, lambda: None, lambda line: None)  # noqa: ARG005
+        self.hub = LiveHub(
+            self._session,
+            unix_clock(),
+            settings,
+            identity,
+            lambda: None,
+            lambda line: None,  # noqa: ARG005
+            epoch,
+        )
 
     def wait_for(self, key: str) -> None:
         while key not in {item.key for item in self.hub.gather().items}:

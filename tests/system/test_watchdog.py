@@ -7,9 +7,8 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -22,16 +21,10 @@ from robot_agent.emulator.emulation import Emulation, RobotToEmulate, default_ad
 from robot_agent.emulator.robot import EmulatedRobot
 from tests.support.emulated_robot import HALL, LINKS, MIDDLE
 from tests.support.swarm_runs import ROOT
+from tests.support.waiting import until
 
-LOOK_S = 0.005
 FURTHEST_M = 0.04
 LINK_IDS = ["-".join(link) for link in LINKS]
-
-
-def wait_until(condition: Callable[[], bool]) -> None:
-    """Look again and again; a test that never ends has failed."""
-    while not condition():
-        threading.Event().wait(LOOK_S)
 
 
 @contextmanager
@@ -52,7 +45,7 @@ def driven(
         ]
         with subprocess.Popen(command, cwd=ROOT) as agent:
             try:
-                wait_until(lambda: has_driven(emulation.robot))
+                until(lambda: has_driven(emulation.robot))
                 yield emulation, agent
             finally:
                 agent.kill()
@@ -65,7 +58,7 @@ def has_driven(robot: EmulatedRobot) -> bool:
 def wait_until_it_stands_for_good(robot: EmulatedRobot, since_ns: int) -> int:
     """When the wheels stopped; not before whatever was under way at a moment has had its time."""
     over_ns = since_ns + round(STOP_WITHIN_S * 1e9)
-    wait_until(lambda: time.monotonic_ns() > over_ns and robot.standing_since_ns() is not None)
+    until(lambda: time.monotonic_ns() > over_ns and robot.standing_since_ns() is not None)
     stood_ns = robot.standing_since_ns()
     assert stood_ns is not None
     return stood_ns

@@ -35,7 +35,10 @@ def test_circles_stay_in_the_compartments_at_a_robots_pace() -> None:
 
 def test_a_runs_robots_are_where_the_run_says() -> None:
     endpoint, rng = free_endpoint(), np.random.default_rng(1)
-    with Session(SessionSettings(endpoint, hub=True)) as hub, TruthOfRun.of(endpoint, rng) as truth:
+    with (
+        Session(SessionSettings(endpoint, hub=True)) as hub,
+        TruthOfRun.of(SessionSettings(endpoint), rng) as truth,
+    ):
         publisher = hub.publisher(topics.TRUTH.key("a"), topics.TRUTH.delivery)
         seen: list[TrackedPose] = []
         while not seen:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -45,7 +44,7 @@ def verdicts(poses: list[TrackedPose]) -> list[tuple[str, str | None]]:
 
 def altered(alter: Callable[[Pose], Pose]) -> list[TrackedPose]:
     poses = list(track())
-    after = [replace(tracked, pose=alter(tracked.pose)) for tracked in poses[FAULT:]]
+    after = [tracked._replace(pose=alter(tracked.pose)) for tracked in poses[FAULT:]]
     return poses[:FAULT] + after
 
 
@@ -75,7 +74,7 @@ def test_ids_that_swap_are_named_for_as_long_as_they_are_swapped() -> None:
     poses = list(track())
     other = {"a": "b", "b": "a"}
     poses[FAULT:REPAIRED] = [
-        replace(tracked, robot=other[tracked.robot]) for tracked in poses[FAULT:REPAIRED]
+        tracked._replace(robot=other[tracked.robot]) for tracked in poses[FAULT:REPAIRED]
     ]
     said = verdicts(poses)
     assert all(reason is None for _, reason in said[:FAULT])
@@ -88,7 +87,7 @@ def test_ids_that_swap_are_named_for_as_long_as_they_are_swapped() -> None:
 def test_a_tracker_that_freezes_is_named() -> None:
     poses = list(track())
     held = {tracked.robot: tracked.pose for tracked in poses[:FAULT]}
-    frozen = [replace(tracked, pose=held[tracked.robot]) for tracked in poses[FAULT:]]
+    frozen = [tracked._replace(pose=held[tracked.robot]) for tracked in poses[FAULT:]]
     said = verdicts(poses[:FAULT] + frozen)[FAULT:]
     assert all((reason or "").startswith("frozen") for _, reason in said[2 * SETTINGS.frozen_after :])
 

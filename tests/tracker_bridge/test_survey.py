@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from swarm.config.experiment import TrackerSettings
 from swarm.geometry import Pose
@@ -22,7 +21,7 @@ def surveyed(alter: float = 1.0) -> Survey:
         t_ns = number * PERIOD_NS
         pose = Pose(alter * (0.5 + 0.001 * number), alter * 0.5, 0.0)
         seen = TrackedPose("a", pose, t_ns, t_ns, residual_m=0.0004, quality=0.75)
-        survey.take([seen, replace(seen, robot="Wand")], t_ns + 3_000_000)
+        survey.take([seen, seen._replace(robot="Wand")], t_ns + 3_000_000)
     return survey
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from swarm.config.experiment import Experiment
 from swarm.geometry import Pose
@@ -15,8 +15,7 @@ POLL_S = 0.002
 """How often a real tracking system is asked: a pose then waits 1 ms on the average."""
 
 
-@dataclass(frozen=True, slots=True)
-class TrackedPose:
+class TrackedPose(NamedTuple):
     """One robot as a tracking system saw it, in the arena frame, at the run's time of capture.
 
     What a system does not say stays 0, and None for what may really be 0.

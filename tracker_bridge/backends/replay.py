@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 
 from swarm.config.experiment import Experiment
@@ -53,7 +52,7 @@ def replay(experiment: Experiment, path: Path) -> Replay:
 
 
 def _shifted(tracked: TrackedPose) -> Callable[[int], Iterable[TrackedPose]]:
-    return lambda t_ns: [replace(tracked, captured_t_ns=t_ns, received_t_ns=t_ns)]
+    return lambda t_ns: [tracked._replace(captured_t_ns=t_ns, received_t_ns=t_ns)]
 
 
 def _placed(roster: Roster, bodies: list[Body], source_ns: int) -> Callable[[int], Iterable[TrackedPose]]:

@@ -12,6 +12,7 @@ import numpy as np
 from swarm.clock import unix_clock
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
+from swarm.runtime.process import add_protection_arguments, session_settings
 from swarm.signals import leave_on_signals
 from tracker_bridge.backends.interface import Backend
 from tracker_bridge.backends.replay import replay
@@ -35,7 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, default=0.0, help="how long; 0 is until Ctrl-C")
     motion = parser.add_mutually_exclusive_group()
     motion.add_argument("--file", type=Path, help="a recording or a log: where the robots are")
-    motion.add_argument("--connect", metavar="tcp/HOST:PORT", help="a simulated run: where the robots are")
+    motion.add_argument("--connect", metavar="tls/HOST:PORT", help="a simulated run: where the robots are")
+    add_protection_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -64,5 +66,5 @@ def _motion(arguments: argparse.Namespace, experiment: Experiment, stack: ExitSt
         return replay(replace(experiment, tracker=plain), arguments.file)
     rng = np.random.default_rng(experiment.run.seed)
     if arguments.connect:
-        return stack.enter_context(TruthOfRun.of(arguments.connect, rng))
+        return stack.enter_context(TruthOfRun.of(session_settings(arguments, arguments.connect), rng))
     return Circles(experiment, rng)

@@ -55,9 +55,9 @@ class TruthOfRun:
 
     @classmethod
     @contextmanager
-    def of(cls, endpoint: str, rng: np.random.Generator) -> Iterator[TruthOfRun]:
+    def of(cls, settings: SessionSettings, rng: np.random.Generator) -> Iterator[TruthOfRun]:
         """Listens to the run's server for as long as the block lasts."""
-        with Session(SessionSettings(endpoint)) as session:
+        with Session(settings) as session:
             yield cls(session.inbox(topics.TRUTH.key(), topics.TRUTH.delivery, keep_all=True), rng)
 
     def poses(self, t_ns: int) -> list[TrackedPose]:

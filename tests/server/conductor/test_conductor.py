@@ -22,6 +22,7 @@ from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import Topic
 from swarm.runtime.identity import RunIdentity
+from tests.support.controls import control_of
 from tests.support.swarm_runs import experiment_text, write_experiment
 
 TICK_NS = NS_PER_S // 10
@@ -35,7 +36,8 @@ class Rig:
         experiment = Experiment.load(write_experiment(directory, experiment_text(moves=10)))
         reporter = Reporter(self)
         identity, carrier = RunIdentity.of(experiment, 3), SimulatedCarrier(reporter)
-        self.conductor = Conductor(experiment, identity, reporter, carrier, earlier)
+        self.control = control_of(experiment, reporter)
+        self.conductor = Conductor(experiment, identity, reporter, carrier, self.control, earlier)
         self.t_ns = 0
         self._sequence = 0
 

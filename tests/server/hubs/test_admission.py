@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from server.hubs.admission import MOST_SAID, Admission
+from server.hubs.admission import MOST_SAID, MOST_STARTS, Admission
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header, Item
 from swarm.runtime.identity import Fingerprint
 from swarm.runtime.liveliness import Presence
 
 RUN = Fingerprint("aaaa", 1, 0, "cccc")
-OWN_EPOCH = 5
 
 
 class Door:
@@ -19,7 +18,7 @@ class Door:
 
     def __init__(self) -> None:
         self.told: list[str] = []
-        self.admission = Admission(RUN, ["r0", "r1"], OWN_EPOCH, self._tell)
+        self.admission = Admission(RUN, ["r0", "r1"], self._tell)
 
     def _tell(self, name: str, text: str, level: pb.Event.Level.ValueType) -> None:
         assert level == pb.Event.WARNING
@@ -46,11 +45,32 @@ def test_a_robot_speaks_for_itself_from_the_epoch_on_that_it_is_present_with(doo
     assert not door.admission.knows(8)
 
 
-def test_the_server_and_the_tracker_speak_under_all_keys(door: Door) -> None:
-    assert door.accepts("robot/r0/order", OWN_EPOCH)
+def test_the_tracker_says_where_robots_are_and_nothing_else_for_them(door: Door) -> None:
     assert not door.accepts("robot/r0/pose", 9)
     assert door.admission.admits(Presence("tracker", "bridge", "lab", 9, str(RUN)))
     assert door.accepts("robot/r0/pose", 9)
+    assert door.accepts("tracker/event", 9)
+    assert not door.accepts("robot/r0/move", 9)
+
+
+def test_what_the_server_says_comes_from_nowhere_else(door: Door) -> None:
+    for kind, name in (("robot", "r0"), ("tracker", "bridge"), ("server", "server")):
+        assert door.admission.admits(Presence(kind, name, "lab", 9, str(RUN)))
+    for key in ("run/state", "server/event", "robot/r0/order", "sim/r0/carry"):
+        assert not door.accepts(key, 9)
+
+
+def test_an_emulator_says_where_the_bodies_are_that_it_plays(door: Door) -> None:
+    assert door.admission.admits(Presence("emulator", "robots", "lab", 4, str(RUN)))
+    assert door.accepts("sim/r1/truth", 4)
+
+
+def test_who_starts_too_often_is_not_believed_any_more(door: Door) -> None:
+    for epoch in range(1, MOST_STARTS + 1):
+        assert door.admission.admits(Presence("robot", "r0", "board", epoch, str(RUN)))
+    assert not door.admission.admits(Presence("robot", "r0", "board", MOST_STARTS + 1, str(RUN)))
+    assert door.accepts("robot/r0/move", MOST_STARTS), "the starts before go on"
+    assert not door.accepts("robot/r0/move", MOST_STARTS + 1)
 
 
 def test_a_key_that_nobody_knows_is_left_to_the_recorder(door: Door) -> None:

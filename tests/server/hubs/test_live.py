@@ -35,9 +35,17 @@ class Laboratory:
         experiment = Experiment.load(write_experiment(directory, experiment_text(learners(2))))
         hub_session = stack.enter_context(Session(SessionSettings(self._endpoint, hub=True)))
         self.said: list[str] = []
+        self.check: Callable[[], None] = lambda: None
+        """What the hub looks at while it waits."""
         self._identity = RunIdentity.of(experiment, 0, "0123456789ab")
         self.hub = LiveHub(
-            hub_session, unix_clock(), experiment, self._identity, lambda: None, self.said.append
+            hub_session,
+            unix_clock(),
+            experiment,
+            self._identity,
+            lambda: self.check(),
+            self.said.append,
+            epoch=1,
         )
 
     def joins(self, kind: str, name: str, epoch: int = 1, identity: str = "") -> Session:
@@ -82,6 +90,24 @@ def test_a_run_begins_although_one_robot_is_late_and_the_others_talk(laboratory:
         for item in laboratory.hub.gather().items:
             heard.setdefault(item.key, []).append(item.payload)
     assert heard["robot/r0/path"] == [b"given", b"late"], "what must not be lost is in the first batch"
+
+
+def test_what_was_said_before_the_trial_began_is_kept_although_it_never_begins(
+    laboratory: Laboratory,
+) -> None:
+    """The server is told to leave while it still waits for somebody."""
+    early = laboratory.joins("robot", "r0")
+    early.publisher("robot/r0/path", Delivery.EVERY).put(b"given", attachment=Header(1, 1, 0).pack())
+    looks = iter(range(10))
+
+    def told_to_leave() -> None:
+        if next(looks) == 9:
+            raise SystemExit
+
+    laboratory.check = told_to_leave
+    with pytest.raises(SystemExit):
+        laboratory.hub.start()
+    assert "robot/r0/path" in [item.key for item in laboratory.hub.unsent().items]
 
 
 def test_a_poll_is_bounded_and_loses_nothing(laboratory: Laboratory) -> None:

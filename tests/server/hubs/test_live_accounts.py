@@ -25,7 +25,7 @@ def test_the_closing_account_of_each_process_comes_after_all_that_it_sent(tmp_pa
         Session(SessionSettings(endpoint)) as there,
     ):
         identity = RunIdentity.of(experiment, 0, "0123456789ab")
-        hub = LiveHub(here, unix_clock(), experiment, identity, lambda: None, print)
+        hub = LiveHub(here, unix_clock(), experiment, identity, lambda: None, print, epoch=1)
         claim(there, Presence("robot", "r0", "board", 77, str(identity.fingerprint)))
         node = LiveNode(there, unix_clock(), 0.01, epoch=77)
         while not present(here, "robot"):
@@ -33,9 +33,9 @@ def test_the_closing_account_of_each_process_comes_after_all_that_it_sent(tmp_pa
         assert hub.accounts() == {}, "nobody has left"
         for number in range(1, 1001):
             node.publish(topics.MOVE, pb.Move(number=number), "r0")
-        node.publish(topics.VIEW, pb.View(t_ns=1), "r0")
         node.give_account("r0")
         last_words = hub.finish()
+        hub.publish(topics.VIEW, pb.View(t_ns=1), "r0")
         hub.publish(topics.SERVER_EVENT, pb.Event(name="over"))
     numbers = [item.header.sequence for item in last_words.items if item.key == "robot/r0/move"]
     assert numbers == list(range(1, 1001))

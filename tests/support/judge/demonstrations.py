@@ -54,9 +54,9 @@ def random_view(
     limit_rad = camera.horizontal_fov_rad / 2 - margin_rad
     bearing_rad = generator.uniform(-limit_rad, limit_rad)
     place, robot = _random_line(generator, generator.uniform(NEAREST_M, FARTHEST_M))
-    heading = replace(place, theta_rad=wrap_angle_rad(place.theta_rad - bearing_rad))
+    heading = place._replace(theta_rad=wrap_angle_rad(place.theta_rad - bearing_rad))
     observer = heading.compose(Pose(-camera.forward_m, 0.0, 0.0))
-    return observer, replace(robot, theta_rad=generator.uniform(-math.pi, math.pi))
+    return observer, robot._replace(theta_rad=generator.uniform(-math.pi, math.pi))
 
 
 def random_demonstration(
@@ -122,7 +122,7 @@ def _facing(observer: Pose, corners: tuple[Pose, ...]) -> Pose:
         [math.atan2(corner.y_m - observer.y_m, corner.x_m - observer.x_m) for corner in corners]
     )
     mean_rad = math.atan2(np.sin(angles).mean(), np.cos(angles).mean())
-    return replace(observer, theta_rad=mean_rad)
+    return observer._replace(theta_rad=mean_rad)
 
 
 def _is_in_view(corner: Pose, observer: Pose, camera: Camera, margin_rad: float) -> bool:

@@ -149,6 +149,13 @@ def test_a_robot_alone_is_told_that_there_is_nobody_to_watch(tmp_path: Path) -> 
         load(tmp_path, text)
 
 
+def test_a_visit_has_no_more_frames_than_one_message_holds(tmp_path: Path) -> None:
+    watching = GOOD.replace('id = "pupil"', 'id = "pupil"\nwatches = "teacher"').replace("0.0]", "0.05]")
+    load(tmp_path, watching + "[visits]\nduration_s = 600\nframes_per_s = 0.8\n")
+    with pytest.raises(UserError, match=r"toml:\d+: 600 s at 5 frames a second are 3000 frames of a visit"):
+        load(tmp_path, watching + "[visits]\nduration_s = 600\n")
+
+
 def test_a_file_that_is_not_there_or_no_text(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="there is no such file"):
         Experiment.load(tmp_path / "none.toml")

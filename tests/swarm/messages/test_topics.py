@@ -37,9 +37,10 @@ def test_patterns_are_distinct() -> None:
     assert len({topic.pattern for topic in TABLE}) == len(TABLE)
 
 
-def test_a_robot_receives_its_own_pose_its_own_orders_and_the_state_of_the_run() -> None:
+def test_a_robot_receives_its_own_pose_and_orders_the_run_s_state_and_emergency_stops() -> None:
     """The paper's firewall: nothing but what the camera sees crosses from robot to robot."""
-    assert {topic for topic in TABLE if topic.to_robot} == {topics.POSE, topics.ORDER, topics.RUN_STATE}
+    received = {topics.POSE, topics.ORDER, topics.RUN_STATE, topics.ESTOP}
+    assert {topic for topic in TABLE if topic.to_robot} == received
 
 
 def test_the_documentation_is_made_from_the_table() -> None:

@@ -60,9 +60,9 @@ def test_a_figure_has_curves_ratios_times_a_table_and_a_plot(reference: tuple[Pa
 def test_two_workers_give_the_same_numbers(
     reference: tuple[Path, dict[str, Any]], tmp_path: Path, scheduler: str
 ) -> None:
-    store = open_store(tmp_path, SHORT["seed"], SHORT["steps"])
     study = load_figure("fig3")
     assert isinstance(study, Study)
+    store = open_store(tmp_path, SHORT["seed"], SHORT["steps"], study.series.values())
     tasks = missing_tasks(store, dict.fromkeys(study.series.values(), 2))
     with workers(scheduler, 2) as started:
         assert started.count == 2
@@ -80,7 +80,7 @@ def test_another_seed_gives_other_numbers(reference: tuple[Path, dict[str, Any]]
 def test_an_interrupted_study_goes_on_where_it_stopped(
     reference: tuple[Path, dict[str, Any]], tmp_path: Path
 ) -> None:
-    store = open_store(tmp_path, SHORT["seed"], SHORT["steps"])
+    store = open_store(tmp_path, SHORT["seed"], SHORT["steps"], [SMALL_NO_IMITATION])
     tasks = missing_tasks(store, {SMALL_NO_IMITATION: 2})
 
     def interrupt(_: Timing) -> None:
@@ -137,6 +137,7 @@ def test_every_figure_can_be_made(tmp_path: Path) -> None:
         ({"runs": 10**9}, "would need .* GB of memory"),
         ({"steps": 10**15}, "would need .* GB of memory"),
         ({"scheduler": "cloud"}, "unknown scheduler 'cloud'; known: processes, dask"),
+        ({"scheduler": "tcp://127.0.0.1:1"}, "no Dask scheduler answers at tcp://127.0.0.1:1"),
     ],
 )
 def test_a_bad_call_says_why_and_leaves_nothing(tmp_path: Path, asked: dict[str, Any], message: str) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from swarm.errors import UserError
-from swarm.runtime.endpoint import check_endpoint
+from swarm.runtime.endpoint import check_endpoint, check_protection
 
 BAD = {
     "http/127.0.0.1:80": "'http' is none of",
@@ -27,7 +29,7 @@ def test_a_bad_endpoint_is_refused_with_its_fault_and_a_good_one(endpoint: str) 
     with pytest.raises(UserError, match=BAD[endpoint]) as refused:
         check_endpoint(endpoint)
     assert str(refused.value).startswith(f"{endpoint}: ")
-    assert "tcp/192.168.1.10:7447" in str(refused.value)
+    assert "tls/192.168.1.10:7447" in str(refused.value)
     assert "\n" not in str(refused.value)
 
 
@@ -36,3 +38,27 @@ def test_a_bad_endpoint_is_refused_with_its_fault_and_a_good_one(endpoint: str) 
 )
 def test_a_good_endpoint_is_let_pass(endpoint: str) -> None:
     check_endpoint(endpoint)
+
+
+@pytest.mark.parametrize(
+    "endpoint", ["tcp/0.0.0.0:7447", "tcp/192.0.2.1:1", "udp/[::]:7447", "ws/192.0.2.1:1"]
+)
+def test_nothing_that_others_can_reach_is_opened_in_the_clear(endpoint: str) -> None:
+    address = endpoint.partition("/")[2]
+    with pytest.raises(UserError, match=f"tls/{re.escape(address)} with --credentials DIR .* --insecure"):
+        check_protection(endpoint, certified=False, insecure=False)
+    check_protection(endpoint, certified=False, insecure=True)
+
+
+@pytest.mark.parametrize("endpoint", ["tls/127.0.0.1:7447", "quic/192.0.2.1:7447"])
+def test_what_shows_certificates_needs_some(endpoint: str) -> None:
+    with pytest.raises(UserError, match="needs certificates: --credentials DIR"):
+        check_protection(endpoint, certified=False, insecure=True)
+    check_protection(endpoint, certified=True, insecure=False)
+
+
+@pytest.mark.parametrize(
+    "endpoint", ["tcp/127.0.0.1:1", "tcp/localhost:1", "tcp/[::1]:1", "unixsock-stream/x"]
+)
+def test_one_machine_needs_no_certificates(endpoint: str) -> None:
+    check_protection(endpoint, certified=False, insecure=False)

@@ -7,6 +7,7 @@ from itertools import count
 from swarm.clock import unix_clock
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
+from swarm.runtime.liveliness import Presence, claim
 from swarm.runtime.node import LiveNode, Sequencer
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
@@ -25,6 +26,7 @@ def test_a_robot_hears_its_own_messages_numbered_without_gaps() -> None:
         Session(SessionSettings(endpoint, hub=True)) as here,
         Session(SessionSettings(endpoint)) as there,
     ):
+        claim(here, Presence("server", "server", "here", 77))
         publisher = LiveNode(here, unix_clock(), PERIOD_S, epoch=77)
         receiver = LiveNode(there, unix_clock(), PERIOD_S, epoch=78)
         own, everyone = receiver.subscribe(topics.ORDER, "a"), receiver.subscribe(topics.ORDER)
@@ -52,6 +54,7 @@ def test_a_robot_hears_its_own_messages_numbered_without_gaps() -> None:
 def test_ticks_are_multiples_of_the_period() -> None:
     ticks: list[int] = []
     with Session(SessionSettings(free_endpoint(), hub=True)) as session:
+        claim(session, Presence("server", "server", "here", 1))
         node = LiveNode(session, unix_clock(), PERIOD_S, epoch=1)
 
         def step(t_ns: int) -> None:

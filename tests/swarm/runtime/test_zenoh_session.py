@@ -11,7 +11,14 @@ import pytest
 
 from swarm.errors import UserError
 from swarm.messages.topics import Delivery
-from swarm.runtime.zenoh_session import LARGEST_MESSAGE_BYTES, Inbox, Publisher, Session, SessionSettings
+from swarm.runtime.zenoh_session import (
+    LARGEST_MESSAGE_BYTES,
+    NEWEST_KEPT,
+    Inbox,
+    Publisher,
+    Session,
+    SessionSettings,
+)
 from tests.support.endpoints import free_endpoint
 
 WAKE_S = 0.02
@@ -82,16 +89,18 @@ def test_every_payload_arrives_in_order_with_what_is_beside_it(hub: Session, cli
     )
 
 
-def test_of_a_newest_delivery_one_is_kept(hub: Session, client: Session) -> None:
+def test_of_a_newest_delivery_the_last_few_are_kept(hub: Session, client: Session) -> None:
     newest = hub.inbox("robot/a/pose", Delivery.NEWEST)
     all_of_them = hub.inbox("robot/*/pose", Delivery.NEWEST, keep_all=True)
     wake = Arrivals(hub, "robot/*/pose")
     publisher = client.publisher("robot/a/pose", Delivery.NEWEST)
     introduced(publisher, all_of_them, wake)
-    for number in range(20):
+    for number in range(2 * NEWEST_KEPT):
         publisher.put(str(number).encode())
-    assert len(drained(publisher, all_of_them, wake, b"last")) == 21
-    assert [sample.payload for sample in newest.poll()] == [b"last"]
+    assert len(drained(publisher, all_of_them, wake, b"last")) == 2 * NEWEST_KEPT + 1
+    kept = [sample.payload for sample in newest.poll()]
+    assert len(kept) == NEWEST_KEPT
+    assert kept[-1] == b"last"
 
 
 def test_clients_reach_each_other_through_the_hub(hub: Session, client: Session, endpoint: str) -> None:  # noqa: ARG001

@@ -68,7 +68,7 @@ def test_the_picture_is_there(result: dict[str, Any]) -> None:
 def test_an_existing_directory_is_not_touched(tmp_path: Path) -> None:
     done = swarm("trials", str(EXPERT), "--trials", "1", "--moves", "10", "--out", str(tmp_path))
     assert done.returncode == 2
-    assert "is there already: choose another --out" in done.stderr
+    assert "nothing is overwritten, choose another --out" in done.stderr
     assert list(tmp_path.iterdir()) == []
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from swarm.errors import UserError
+from swarm.files import new_folder
 
 Grey = npt.NDArray[np.uint8]
 Floats = npt.NDArray[np.float64]
@@ -28,7 +29,7 @@ class PictureRecorder:
         self._as_video = as_video
         self._video: cv2.VideoWriter | None = None
         self._frame = 0
-        make_new_folder(folder)
+        new_folder(folder)
         if not as_video:
             (folder / "frames").mkdir()
         self._file = (folder / "truth.csv").open("w", newline="")
@@ -63,16 +64,6 @@ class PictureRecorder:
             name = str(self._folder / self.source)
             self._video = cv2.VideoWriter(name, code, self._frames_per_s, size, isColor=False)
         self._video.write(picture)
-
-
-def make_new_folder(folder: Path) -> None:
-    """UserError if it is there already or cannot be made."""
-    try:
-        folder.mkdir(parents=True)
-    except FileExistsError as error:
-        raise UserError(f"{folder}: exists already; nothing is overwritten, choose another --out") from error
-    except OSError as error:
-        raise UserError(f"{folder}: cannot be made ({error.strerror}); choose another --out") from error
 
 
 @dataclass(frozen=True)

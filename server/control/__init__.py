@@ -1,0 +1,1 @@
+"""Where people learn how a live run goes, and where their orders come in."""

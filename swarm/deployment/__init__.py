@@ -1,0 +1,1 @@
+"""From a laboratory file to machines that run what it says: wheels, releases, services, over SSH."""

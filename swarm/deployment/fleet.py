@@ -1,0 +1,75 @@
+"""Which machines a laboratory has, and what each of them hosts."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from swarm.config.laboratory import Laboratory, Machine, RobotMachine
+
+AGENT = "swarm-agent@"
+BRIDGE = "swarm-bridge"
+SERVER = "swarm-server"
+DRIVER_EXTRAS = {"serial": "serial", "i2c": "i2c", "spi": "spi"}
+TRACKER_EXTRAS = {"motioncapture": "mocap"}
+"""Extras of the package that a driver or a tracking system needs."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """A machine and what it hosts."""
+
+    machine: Machine
+    robots: tuple[RobotMachine, ...]
+    tracking_system: str | None
+    """The tracking system whose bridge it hosts; None if it hosts no bridge."""
+    conducts: bool
+    """Whether the server is there."""
+
+    @property
+    def name(self) -> str:
+        """For people: what it hosts, and where it is."""
+        hosted = [robot.id for robot in self.robots]
+        hosted += ["tracker"] if self.tracking_system is not None else []
+        hosted += ["server"] if self.conducts else []
+        return f"{', '.join(hosted)} on {self.machine.host}"
+
+    @property
+    def extras(self) -> frozenset[str]:
+        """Extras of the package that have to be installed there."""
+        found = {DRIVER_EXTRAS.get(robot.driver, "") for robot in self.robots}
+        found.add(TRACKER_EXTRAS.get(self.tracking_system or "", ""))
+        found.add("lab" if self.conducts else "")
+        return frozenset(found - {""})
+
+    @property
+    def units(self) -> list[str]:
+        """The names of the unit files that its services are started from."""
+        everything = self.services([robot.id for robot in self.robots])
+        return sorted({f"{AGENT}.service" if name.startswith(AGENT) else name for name in everything})
+
+    def services(self, taking_part: Collection[str]) -> list[str]:
+        """The services to start for an experiment with these robots; the server's comes first."""
+        server = [f"{SERVER}.service"] if self.conducts else []
+        bridge = [f"{BRIDGE}.service"] if self.tracking_system is not None else []
+        return (
+            server
+            + bridge
+            + [f"{AGENT}{robot.id}.service" for robot in self.robots if robot.id in taking_part]
+        )
+
+
+def targets(laboratory: Laboratory) -> list[Target]:
+    """Every machine once, whatever it hosts; the server's first."""
+    everything = [laboratory.server, laboratory.bridge, *laboratory.robot]
+    machines = {machine.login: machine for machine in reversed(everything)}
+    backend = laboratory.tracker.backend if laboratory.tracker else ""
+    return [
+        Target(
+            machine,
+            tuple(robot for robot in laboratory.robot if robot.login == login),
+            backend if laboratory.bridge.login == login else None,
+            laboratory.server.login == login,
+        )
+        for login, machine in reversed(machines.items())
+    ]

@@ -1,0 +1,1 @@
+"""How a process lives under systemd, or under this package's supervisor where there is no systemd."""

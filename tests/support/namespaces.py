@@ -1,0 +1,68 @@
+"""Machines of a laboratory as network namespaces of this one, each on a link that can lose packets."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+
+from tests.support.swarm_runs import ROOT
+
+
+def can_make_namespaces() -> bool:
+    """Whether this user may; tests that need them are skipped elsewhere."""
+    return os.geteuid() == 0 and bool(shutil.which("ip")) and Path("/dev/net/tun").exists()
+
+
+class Star:
+    """A hub's namespace, and a namespace for each board; link 0 leads from the hub to this machine itself.
+
+    `tag` keeps the names apart from those of another test.
+    """
+
+    def __init__(self, tag: str, boards: int, stack: ExitStack) -> None:
+        self.hub = f"{tag}-hub"
+        self.boards = [f"{tag}-board{number}" for number in range(1, boards + 1)]
+        for name in (self.hub, *self.boards):
+            _ip("netns", "add", name)
+            stack.callback(_ip, "netns", "del", name)
+            _ip("-n", name, "link", "set", "lo", "up")
+        self._links = [self._link(number, name, stack) for number, name in enumerate(("", *self.boards))]
+
+    def hub_address(self, link: int) -> str:
+        """The hub's address as it is reached over a link."""
+        return f"10.77.{link}.1"
+
+    def lose(self, link: int, share: float) -> None:
+        """From now on a link loses so many of its packets, in both directions."""
+        pipe = self._links[link].stdin
+        assert pipe
+        pipe.write(f"{share}\n")
+        pipe.flush()
+
+    def _link(self, number: int, far: str, stack: ExitStack) -> subprocess.Popen[str]:
+        ends = (self.hub, self.hub_address(number), far, f"10.77.{number}.2")
+        process = subprocess.Popen(
+            [sys.executable, "-m", "tests.support.lossy_link", *ends, str(number)],
+            cwd=ROOT,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        stack.enter_context(process)
+        stack.callback(process.kill)
+        assert process.stdout
+        assert process.stdout.readline() == "ready\n"
+        return process
+
+
+def inside(name: str) -> list[str]:
+    """What to put before a command line to run it in a namespace."""
+    return ["ip", "netns", "exec", name]
+
+
+def _ip(*words: str) -> None:
+    subprocess.run(["ip", *words], check=True, capture_output=True)
