@@ -100,9 +100,12 @@ class AgentInbox:
         """Whether whatever is under way is given up: the trial is over, or its server is lost and the run's
         settings want that.
         """
-        if self._stops_in_silence and not self._hears_server:
-            return True
-        return self._order.kind == pb.Order.STOP or self._phase == pb.RunState.ENDED
+        return self.server_lost or self._order.kind == pb.Order.STOP or self._phase == pb.RunState.ENDED
+
+    @property
+    def server_lost(self) -> bool:
+        """Whether the server has been silent for so long that this robot stops at once."""
+        return self._stops_in_silence and not self._hears_server
 
     @property
     def bad(self) -> int:

@@ -24,7 +24,7 @@ from server.progress import RunProgress, print_summary
 from server.run import Run, Simulation
 from server.run_directory import RunDirectory
 from server.trial import TrialResult
-from swarm.access.zenoh_rules import limits
+from swarm.access.zenoh_rules import hub_limits
 from swarm.checkup.checkup import experiment_findings, findings
 from swarm.checkup.finding import Level, require_good
 from swarm.checkup.machine import room, writable
@@ -92,7 +92,7 @@ def _environment(
         how = plan.simulation
         return partial(simulated, plan.experiment, how.speed, progress.warn, emulate=how.emulate)
     robots = [robot.id for robot in plan.experiment.robot]
-    settings = session_settings(asked, asked.listen, hub=True, limits=limits(robots))
+    settings = session_settings(asked, asked.listen, hub=True, limits=hub_limits(robots))
     session = open_session.enter_context(Session(settings))
     manager = ServiceManager.of_environment()
     manager.ready()

@@ -79,7 +79,7 @@ class Trial:
                 self._step()
             self._recorder.write(self._hub.finish())
             stopped = self._conductor.stopped
-            self._recorder.end("stopped" if stopped else COMPLETE, stopped, self._hub.accounts())
+            self._end("stopped" if stopped else COMPLETE, stopped)
             self._complete = not stopped
         except BaseException as error:
             self._note_end(error)
@@ -160,7 +160,10 @@ class Trial:
         text = _reason(error)
         self._environment.reporter.event("interrupted", text[:500], pb.Event.ERROR)
         self._recorder.write(self._hub.unsent())
-        self._recorder.end("interrupted", text[:500], self._hub.accounts())
+        self._end("interrupted", text[:500])
+
+    def _end(self, state: str, reason: str) -> None:
+        self._recorder.end(state, reason, self._hub.accounts(), self._hub.receipts())
 
 
 def _reason(error: BaseException) -> str:

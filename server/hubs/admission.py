@@ -53,6 +53,13 @@ class Admission:
         """Whether an epoch is of somebody who took part."""
         return any(epoch in starts for starts in self._admitted.values())
 
+    def robots_of(self, epoch: int) -> tuple[str, ...]:
+        """The robots of a process that took part, in order; none if it is of no robot."""
+        found = (
+            name for (kind, name), starts in self._admitted.items() if kind == "robot" and epoch in starts
+        )
+        return tuple(sorted(found))
+
     def accepts(self, item: Item) -> bool:
         """Whether a message that came from elsewhere is the run's: of whoever the key table says sends it.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Protocol, TypeVar
 
 from google.protobuf.message import Message
 
-from swarm.logs.ending import Sender
+from swarm.logs.ending import Receipt, Sender
 from swarm.messages.header import Item
 from swarm.messages.topics import Topic
 
@@ -46,6 +46,9 @@ class Hub(Protocol):
 
     def accounts(self) -> Mapping[Sender, int] | None:
         """The last number of each key and epoch by its sender's own account; None: all of it was heard."""
+
+    def receipts(self) -> Sequence[Receipt]:
+        """What the robots' processes have received by their own accounts; in lockstep they write it down."""
 
 
 class Batch:

@@ -10,15 +10,15 @@ from collections.abc import Iterable
 from typing import Any
 
 from server.hubs.attendance import Tell
+from swarm.access.zenoh_rules import FASTER
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.topics import Topic
 from swarm.runtime.zenoh_session import Session, WireSample
 
-ALLOWED_PER_S = 200.0
-"""Twenty times the highest declared rate; events and moves come once a second at most."""
-AT_ONCE = 2000.0
-"""Seconds' worth after a gap in the radio, or a start that tells of many paths; more of what a server missed
-and asks for."""
+UNRATED_PER_S = 20.0
+"""Of what comes as it happens: a robot makes a move or two a second."""
+AT_ONCE = 1000
+"""After a gap in the radio, or at a start that tells of many paths; more of what a server asks for."""
 TOLD_EVERY_S = 10.0
 
 
@@ -32,9 +32,9 @@ class LimitedInbox:
         self.key = topic.key(robot)
         listen = session.recovering_inbox if topic.is_recovered else session.inbox_of_others
         self._inbox = listen(self.key, topic.most_waiting)
-        self._at_once = max(AT_ONCE, topic.most_waiting) if topic.is_recovered else AT_ONCE
-        self._per_s = ALLOWED_PER_S * speed
-        self._allowed = self._at_once
+        self._at_once = topic.most_waiting if topic.is_recovered else min(AT_ONCE, topic.most_waiting)
+        self._per_s = (FASTER * topic.rate_hz if topic.rate_hz else UNRATED_PER_S) * speed
+        self._allowed = float(self._at_once)
         self._tell = tell
         self._looked_s: float | None = None
         self._told_s = 0.0

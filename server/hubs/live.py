@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TypeVar
 
 from google.protobuf.message import Message
@@ -17,12 +17,12 @@ from server.hubs.limited_inbox import inboxes_of
 from server.hubs.unheard import Unheard, must_not_be_lost
 from swarm.clock import WallClock
 from swarm.config.experiment import Experiment
-from swarm.logs.ending import Sender
+from swarm.logs.ending import Receipt, Sender, receipts_of
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import ACCOUNT, RUN_IDENTITY, TABLE, Delivery, Topic, topic_of
-from swarm.runtime.account import unpack_account
+from swarm.runtime.account import Account
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import ALIVE_ROBOTS_AND_TRACKERS, present
 from swarm.runtime.node import LivePublisher
@@ -73,6 +73,7 @@ class LiveHub:
         self._ended = False
         self._closing = session.inbox(ACCOUNT.format(name="*"), Delivery.EVERY)
         self._accounts: dict[Sender, int] = {}
+        self._receipts: list[Receipt] = []
         self._gone: set[int] = set()
         """Epochs of the processes that have given their closing account."""
         session.answer(RUN_IDENTITY, identity.pack())
@@ -149,6 +150,9 @@ class LiveHub:
         own = {(key, self._live.epoch): last for key, last in self._live.sent.items()}
         return {sender: last for sender, last in (self._accounts | own).items() if _is_logged(sender[0])}
 
+    def receipts(self) -> Sequence[Receipt]:
+        return self._receipts
+
     def _hear_accounts(self) -> None:
         samples = self._closing.poll()
         self._attendance.look()
@@ -156,9 +160,13 @@ class LiveHub:
             header = Header.unpack(sample.attachment)
             if header is not None and self._admission.knows(header.epoch):
                 self._gone.add(header.epoch)
-                for key, last in unpack_account(sample.payload).items():
+                account = Account.unpack(sample.payload)
+                for key, last in account.sent.items():
                     if self._admission.accepts(Item(key, header, b"")):
                         self._accounts[key, header.epoch] = last
+                self._receipts += receipts_of(
+                    self._admission.robots_of(header.epoch), header.epoch, account.received
+                )
 
     def _tell(self, name: str, text: str, level: pb.Event.Level.ValueType) -> None:
         """An event in the log, and a line for whoever watches unless it is only for the log."""

@@ -11,7 +11,7 @@ import hashlib
 import os
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,7 +23,7 @@ from google.protobuf.message import Message
 from server.hubs.hub import Batch
 from server.recording.disk_sync import DiskSync
 from swarm.files import new_file
-from swarm.logs.ending import Sender, ending_records
+from swarm.logs.ending import Receipt, Sender, ending_records
 from swarm.logs.mcap_writer import LogWriter
 from swarm.messages.topics import topic_of
 from swarm.messages.validation import MAX_PAYLOAD_BYTES
@@ -136,14 +136,22 @@ class Recorder:
         """Why the disk could not take the log; empty if it could."""
         return str(self._sync.failure or "")
 
-    def end(self, state: str, reason: str, accounts: Mapping[Sender, int] | None) -> None:
-        """Write how the trial ended, and what every sender has sent by its own account.
+    def end(
+        self,
+        state: str,
+        reason: str,
+        accounts: Mapping[Sender, int] | None,
+        receipts: Sequence[Receipt] = (),
+    ) -> None:
+        """Write how the trial ended, and what everybody has sent and received by their own accounts.
 
         `accounts` is None if the hub had everything that was sent, so that the last number written is the
         last one sent.
         """
         self.flush()
-        self._add_metadata(ending_records(state, reason, self.last if accounts is None else accounts))
+        self._add_metadata(
+            ending_records(state, reason, self.last if accounts is None else accounts, receipts)
+        )
 
     def received(self) -> dict[Sender, int]:
         """How many messages of each sender were written, and flushed."""

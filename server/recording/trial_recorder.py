@@ -8,7 +8,7 @@ it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from google.protobuf.message import Message
@@ -22,7 +22,7 @@ from swarm.clock import NS_PER_S
 from swarm.config.experiment import LogSettings
 from swarm.errors import RunFailedError, UserError, in_words
 from swarm.logs.chain import CONTINUES, last_link
-from swarm.logs.ending import ACCOUNT, CONTINUED, Sender, account_record
+from swarm.logs.ending import ACCOUNT, CONTINUED, Receipt, Sender, account_record
 from swarm.logs.reader import LogError, LogReader
 from swarm.logs.recover import close_log
 from swarm.logs.trial_logs import closed_path, open_path
@@ -118,7 +118,13 @@ class TrialRecorder:
             self._unflushed.clear()
             self._look_at_limits(self._recorder)
 
-    def end(self, state: str, reason: str, accounts: Mapping[Sender, int] | None) -> None:
+    def end(
+        self,
+        state: str,
+        reason: str,
+        accounts: Mapping[Sender, int] | None,
+        receipts: Sequence[Receipt] = (),
+    ) -> None:
         """Write how the trial ended, and what every sender has sent by its own account.
 
         `accounts` is None if the hub had everything that was sent.
@@ -128,7 +134,7 @@ class TrialRecorder:
         if self._recorder:
             self._latched.finished(self._recorder.last)
         sent = self._latched.last if accounts is None else accounts
-        self._try(lambda recorder: self._end(recorder, state, reason, sent))
+        self._try(lambda recorder: self._end(recorder, state, reason, sent, receipts))
 
     def close(self) -> None:
         """Write the index, and give the file its name; a second call does nothing."""
@@ -153,9 +159,16 @@ class TrialRecorder:
         self._part += 1
         self._is_due = False
 
-    def _end(self, recorder: Recorder, state: str, reason: str, sent: Mapping[Sender, int]) -> None:
+    def _end(
+        self,
+        recorder: Recorder,
+        state: str,
+        reason: str,
+        sent: Mapping[Sender, int],
+        receipts: Sequence[Receipt] = (),
+    ) -> None:
         """The ending, and the account of this file."""
-        recorder.end(state, reason, sent)
+        recorder.end(state, reason, sent, receipts)
         account = account_record(recorder.received(), recorder.last, self._before, self._recovered())
         recorder.add_metadata(ACCOUNT, account)
 

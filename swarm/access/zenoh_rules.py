@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from swarm.access.rights import Act, Right
-from swarm.messages.topics import LONG_BYTES, SHORT_BYTES, TABLE
+from swarm.messages.topics import CARRY, LONG_BYTES, MIDDLE_BYTES, SHORT_BYTES, TABLE, Delivery, Topic
 
 _MESSAGES: Mapping[Act, Mapping[str, tuple[str, ...]]] = {
     # A publisher sends only what it has been told that somebody hears.
@@ -24,8 +24,9 @@ _MESSAGES: Mapping[Act, Mapping[str, tuple[str, ...]]] = {
         "egress": ("liveliness_token",),
     },
 }
-FASTER = 20.0
-"""Times the declared rate: a key's messages may come close together after a gap in the radio."""
+FASTER = 50.0
+"""Times the declared rate: cameras of tracking systems take up to 360 pictures a second, and messages come
+close together after a gap in the radio."""
 ACCEPT_MS = 2_000
 """Who has connected and says nothing keeps nobody out for longer. A handshake takes some tenths of a
 second on a board (10 s is Zenoh's default, with room for 100 who wait)."""
@@ -66,8 +67,13 @@ def limits(robots: Sequence[str]) -> dict[str, Any]:
         "transport/unicast/accept_timeout": ACCEPT_MS,
         "adminspace/enabled": False,
         "low_pass_filter": [
-            _at_most("long", ["**"], LONG_BYTES),
-            _at_most("short", [t.key() for t in TABLE if t.largest_bytes == SHORT_BYTES], SHORT_BYTES),
+            _at_most("any", ["**"], LONG_BYTES),
+            *(
+                _at_most(
+                    f"{size} bytes", [topic.key() for topic in TABLE if topic.largest_bytes == size], size
+                )
+                for size in (SHORT_BYTES, MIDDLE_BYTES)
+            ),
         ],
         "downsampling": [
             {
@@ -83,6 +89,27 @@ def limits(robots: Sequence[str]) -> dict[str, Any]:
             }
         ],
     }
+
+
+def hub_limits(robots: Sequence[str]) -> dict[str, Any]:
+    """Of the hub in the server, which hears everything itself: those who only watch may miss something.
+
+    Otherwise one of them that reads too slowly holds up the robots, whose moves wait for room.
+    """
+    watched = [topic.key() for topic in TABLE if topic.delivery is Delivery.EVERY and _is_watched(topic)]
+    overwrite = {"congestion_control": "drop"}
+    return {
+        **limits(robots),
+        "qos/network": [
+            {"messages": ["put"], "flows": ["egress"], "key_exprs": watched, "overwrite": overwrite}
+        ],
+        "transport/link/tx/queue/congestion_control/drop/wait_before_drop": 0,
+    }
+
+
+def _is_watched(topic: Topic[Any]) -> bool:
+    """Whether none but the server needs a topic."""
+    return not topic.to_robot and topic is not CARRY
 
 
 def _rules(name: str, rights: Sequence[Right]) -> list[dict[str, Any]]:

@@ -19,9 +19,10 @@ from swarm.analysis.plots import plot_curves
 from swarm.analysis.report import report
 from swarm.analysis.results_directory import AnalysisDirectory
 from swarm.analysis.summary import Summary
-from swarm.files import printable, write_json, write_png, write_table, write_text
+from swarm.files import printable, write_json, write_png, write_text
 from swarm.logs.identity import LogIdentity
 from swarm.logs.parquet import LogContent, Reading, read_logs
+from swarm.table_files import write_table
 
 _DAMAGE_SHOWN = 3
 """Of a log: enough to see what is wrong with it."""

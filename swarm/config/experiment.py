@@ -6,6 +6,7 @@ one id or compartments that overlap.
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -161,8 +162,8 @@ class TrackerSettings:
     """How far the system's east is turned, counter-clockwise, from the arena's."""
     rate_hz: Annotated[float, Between(1, 1000)] = 10.0
     """Poses of each robot a second; a robot stands when the last is 1 s old."""
-    noise_m: Annotated[float, Between(0, 0.05)] = 0.001
-    """Standard deviation of x and of y."""
+    noise_m: Annotated[float, Between(0, 0.02)] = 0.001
+    """Standard deviation of x and of y; with more, poses look as if somebody carried the robot."""
     noise_rad: Annotated[float, Between(0, 1)] = 0.0087
     """Standard deviation of the heading."""
     latency_s: Annotated[float, Between(0, 0.5)] = 0.06
@@ -254,6 +255,9 @@ class RobotSettings:
     """Learners of one condition share a curve; the role's name if empty."""
     watches: str = ""
     """The robot whose moves it copies through its camera; none if empty."""
+    accesses: str = ""
+    """The learner whose internal state it may read (section 2.4); none if empty. Nothing else permits more
+    than observation between robots, and `swarm check --firewall` tells of it."""
     skirt: str = "red"
     """The colour of its skirt, by which others see it."""
     paths: tuple[tuple[str, ...], ...] = ()
@@ -296,6 +300,19 @@ class Experiment:
         """The experiment that a log was recorded from, with these values in its [learning]."""
         file = ConfigFile(Path(f"{log} (its experiment)"), text)
         file.values["learning"] = {**file.values.get("learning", {}), **learning}
+        return cls._of(file)
+
+    @classmethod
+    def of_settings(cls, source: str, settings: Mapping[str, str]) -> Experiment:
+        """The experiment whose every setting somebody tells as JSON, by `table.key` or `robot.ID.key`."""
+        file = ConfigFile(Path(source), "")
+        robots: dict[str, dict[str, Any]] = {}
+        for name, text in settings.items():
+            *table, key = name.split(".")
+            of_robot = table[0] == "robot"
+            group = robots.setdefault(table[1], {}) if of_robot else file.values.setdefault(table[0], {})
+            group[key] = json.loads(text)
+        file.values["robot"] = list(robots.values())
         return cls._of(file)
 
     @classmethod
@@ -371,6 +388,10 @@ class Experiment:
     def pose_lateness_s(self) -> float:
         """How old a simulated pose is when it leaves the tracker: it was an exchange on its way there."""
         return self.tracker.latency_s + (self.ticks_per_exchange + 1) * self.simulation.tick_s
+
+    def is_accessed(self, robot: RobotSettings) -> bool:
+        """Whether another may read a robot's internal state."""
+        return any(other.accesses == robot.id for other in self.robot)
 
     @property
     def learners(self) -> tuple[RobotSettings, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from base64 import b64encode
 
 from swarm.config.laboratory import Laboratory
 from swarm.deployment.fleet import SERVER
@@ -57,7 +56,7 @@ class Deployment:
         outcome = visit.outcome
         self._plans[outcome.name] = plan
         outcome.release, outcome.changes = plan.release, plan.changes
-        outcome.copied = [name.partition("/")[2] for name in plan.missing]
+        outcome.copied = [file.name for file in plan.missing.values()]
         outcome.services = visit.found["services"]
         is_same = visit.found["current"] == plan.release
         runs = all(outcome.services.get(name) == "active" for name in plan.services)
@@ -76,12 +75,10 @@ class Deployment:
             return
         visit.outcome.state = State.FAILED
         plan, policies = self._plans[visit.outcome.name], self._laboratory.policies
-        for name in plan.missing:
-            file = plan.wheels[name]
+        for place, file in plan.missing.items():
             self._tell(visit.outcome.name, f"copying {file.name} ({file.stat().st_size / 1e6:.1f} MB)")
-            await visit.link.copy(file, f"wheels/{name}")
-        files = {name: b64encode(content).decode() for name, content in plan.files.items()}
-        versions = await visit.link.ask("install", **plan.request, files=files)
+            await visit.link.copy(file, f"wheels/{place}")
+        versions = await visit.link.ask("install", **plan.request)
         self._check_versions(versions)
         within = {"within_s": policies.healthy_within_s, "keep": policies.keep_releases}
         done = await visit.link.ask("activate", release=plan.release, **within)

@@ -3,7 +3,9 @@
 The recorder writes two metadata records when it closes a log. `end` has the trial's state and a reason;
 `sent` has "KEY EPOCH" -> the last sequence number, as its sender says. In lockstep the hub has every
 process's whole output; in real time each process gives an account of what it sent as it leaves. A log
-without them was cut short, or its server was killed. `recovered` is in a log that `swarm recover` made.
+without them was cut short, or its server was killed. `received`, in real time only, has "ROBOT,... EPOCH KEY
+SENDER'S-EPOCH" -> "MESSAGES BYTES": what reached each process of robots. `recovered` is in a log that
+`swarm recover` made.
 
 A later log of a trial has `before`: the last numbers that stand in the logs before it. So each of them can be
 checked by itself.
@@ -12,10 +14,11 @@ checked by itself.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-END, SENT, RECOVERED, BEFORE, ACCOUNT = "end", "sent", "recovered", "before", "account"
+END, SENT, RECEIVED, RECOVERED = "end", "sent", "received", "recovered"
+BEFORE, ACCOUNT = "before", "account"
 COMPLETE = "complete"
 CONTINUED = "continued"
 """Of a log that was closed before its trial was over: the next one goes on."""
@@ -28,6 +31,29 @@ Sender = tuple[str, int]
 
 
 @dataclass(frozen=True)
+class Receipt:
+    """What one start of a process of robots has received under one key from one start of a sender."""
+
+    robots: tuple[str, ...]
+    epoch: int
+    """Of the process; 0 in a lockstep, where it does not matter."""
+    key: str
+    sender: int
+    messages: int
+    bytes: int
+
+
+def receipts_of(robots: tuple[str, ...], epoch: int, counts: Mapping[str, tuple[int, int]]) -> list[Receipt]:
+    """Receipts of a process of robots, from its counts by "KEY EPOCH"; none of one that has no robots."""
+    found = []
+    for name, (messages, size) in counts.items() if robots else ():
+        key, _, sender = name.rpartition(" ")
+        if key and _is_number(sender):
+            found.append(Receipt(robots, epoch, key, int(sender), messages, size))
+    return found
+
+
+@dataclass(frozen=True)
 class Ending:
     """The last word of a log."""
 
@@ -36,6 +62,8 @@ class Ending:
     reason: str = ""
     sent: Mapping[Sender, int] = field(default_factory=dict)
     """The last number of each sender that has given account."""
+    receipts: tuple[Receipt, ...] = ()
+    """What processes of robots have received, of those that have given account."""
     lost: str = ""
     """What `swarm recover` could not read of the log that this one was made of; empty if nothing."""
 
@@ -57,7 +85,8 @@ def last_of(endings: Sequence[Ending]) -> Ending:
     for ending in endings:
         sent |= {sender: max(last, sent.get(sender, 0)) for sender, last in ending.sent.items()}
     lost = "; ".join(dict.fromkeys(ending.lost for ending in endings if ending.lost))
-    return replace(endings[-1], sent=sent, lost=lost)
+    receipts = tuple(receipt for ending in endings for receipt in ending.receipts)
+    return replace(endings[-1], sent=sent, receipts=receipts, lost=lost)
 
 
 def ending_of(metadata: Mapping[str, Mapping[str, str]]) -> Ending:
@@ -65,7 +94,8 @@ def ending_of(metadata: Mapping[str, Mapping[str, str]]) -> Ending:
     end = metadata.get(END, {})
     lost = metadata.get(RECOVERED, {}).get("lost", "")
     sent = numbers_of(metadata.get(SENT, {}))
-    return Ending(end.get("state", ""), end.get("reason", ""), sent, lost)
+    receipts = tuple(_receipts(metadata.get(RECEIVED, {})))
+    return Ending(end.get("state", ""), end.get("reason", ""), sent, receipts, lost)
 
 
 def numbers_of(record: Mapping[str, str]) -> dict[Sender, int]:
@@ -83,9 +113,25 @@ def numbers_record(numbers: Mapping[Sender, int]) -> dict[str, str]:
     return {f"{key} {epoch}": str(number) for (key, epoch), number in sorted(numbers.items())}
 
 
-def ending_records(state: str, reason: str, sent: Mapping[Sender, int]) -> dict[str, dict[str, str]]:
-    """The metadata records of an ending."""
-    return {END: {"state": state, "reason": reason}, SENT: numbers_record(sent)}
+def _receipts(record: Mapping[str, str]) -> Iterator[Receipt]:
+    for name, counts in record.items():
+        words, numbers = name.split(" "), counts.split(" ")
+        if len(words) == 4 and len(numbers) == 2 and all(map(_is_number, (words[1], words[3], *numbers))):
+            robots = tuple(words[0].split(","))
+            messages, size = map(int, numbers)
+            yield Receipt(robots, int(words[1]), words[2], int(words[3]), messages, size)
+
+
+def ending_records(
+    state: str, reason: str, sent: Mapping[Sender, int], receipts: Sequence[Receipt] = ()
+) -> dict[str, dict[str, str]]:
+    """The metadata records of an ending; nothing is said of receipts if there are none."""
+    received = {
+        f"{','.join(one.robots)} {one.epoch} {one.key} {one.sender}": f"{one.messages} {one.bytes}"
+        for one in receipts
+    }
+    ending = {END: {"state": state, "reason": reason}, SENT: numbers_record(sent)}
+    return ending | ({RECEIVED: received} if received else {})
 
 
 def account_record(

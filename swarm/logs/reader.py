@@ -52,6 +52,13 @@ class LogChannel:
     schema: str
     encoding: str
 
+    @classmethod
+    def of(cls, record: Channel, schema: str) -> LogChannel:
+        """As a file defines it, with the name of its schema."""
+        epoch = record.metadata.get("epoch", "")
+        number = int(epoch) if epoch.isascii() and epoch.isdecimal() and len(epoch) < 20 else 0
+        return cls(record.id, record.topic, min(number, MAX_EPOCH), schema, record.message_encoding)
+
     @cached_property
     def topic(self) -> Topic[Any] | None:
         """Its line of the key table, if its messages are of the type that the table says."""
@@ -131,7 +138,7 @@ def nothing(channel: LogChannel) -> bool:
 
 MAX_EPOCH = 2**63 - 1
 """The largest that the tables' signed columns hold."""
-SAID_ONCE = ("run", "robots", "experiment", "versions", "end", "sent", CHAIN, CONTINUES)
+SAID_ONCE = ("run", "robots", "experiment", "versions", "end", "sent", "received", CHAIN, CONTINUES)
 """Metadata of this project's recorder. Other programs give the same name to several records."""
 
 
@@ -267,7 +274,8 @@ class LogReader:
         elif isinstance(record, Schema | Channel):
             self._definitions.add(record)
             if isinstance(record, Channel):
-                self.channels[record.id] = self._channel(record)
+                schema = self._definitions.schema_name(record.schema_id)
+                self.channels[record.id] = LogChannel.of(record, schema)
 
     def _add(self, entries: dict[int, list[Entry]]) -> Iterator[Part]:
         """The parts that are large enough; nothing is added if any of the channels is unknown."""
@@ -284,12 +292,6 @@ class LogReader:
         pending = PendingPart(channel, self._wanted(channel))
         self._pending[channel.id] = pending
         return pending
-
-    def _channel(self, record: Channel) -> LogChannel:
-        epoch = record.metadata.get("epoch", "")
-        schema = self._definitions.schema_name(record.schema_id)
-        number = int(epoch) if epoch.isascii() and epoch.isdecimal() and len(epoch) < 20 else 0
-        return LogChannel(record.id, record.topic, min(number, MAX_EPOCH), schema, record.message_encoding)
 
     def _compare_with_index(self) -> None:
         """A record that became another one by a flipped bit shows here, too."""

@@ -92,6 +92,16 @@ def _trial_of(log: LogIdentity) -> object:
     return (log.run_id or log.path.parent, log.run, *log.replicate)
 
 
+def trial_of(log: Path) -> int:
+    """The trial that a log's name tells of: 0 for trial-000-2.mcap."""
+    return int(closed_path(log).stem.split("-")[1])
+
+
+def part_of(log: Path) -> int:
+    """The part that a log's name tells of: 1 for trial-000.mcap, 2 for trial-000-2.mcap."""
+    return int(closed_path(log).stem.split("-")[2]) if log.name.count("-") > 1 else 1
+
+
 def by_trial(logs: Iterable[LogIdentity]) -> list[list[LogIdentity]]:
     """The parts of each trial, of logs that were joined."""
     trials: dict[str, list[LogIdentity]] = {}
@@ -115,6 +125,11 @@ def misplaced(parts: Sequence[LogIdentity], first: LogIdentity) -> list[str]:
 
 def _run_of(log: LogIdentity) -> object:
     return (log.run_id, log.run, log.seed)
+
+
+def trials_of(path: Path) -> list[list[LogIdentity]]:
+    """The parts of each trial of a run directory, or of the one that a log holds."""
+    return by_trial(logs_in(path, [])) if path.is_dir() else [[identify(path)]]
 
 
 def as_one(part: Part, log: LogIdentity) -> Part:

@@ -49,8 +49,10 @@ class Role(Enum):
 
 SHORT_BYTES = 1_024
 """Room for a message of numbers: the longest of them takes some 120 bytes, its header 24."""
+MIDDLE_BYTES = 8_192
+"""With words, or lists of numbers: a page of text, a path of thousands of moves."""
 LONG_BYTES = 65_536 + 24
-"""Of a message with lists or words: no payload that is larger is decoded. Its header comes beside it."""
+"""With lists of messages: no payload that is larger is decoded. Its header comes beside it."""
 
 
 ROOM_BYTES = 8 << 20
@@ -79,8 +81,11 @@ class Topic(Generic[M]):
     def largest_bytes(self) -> int:
         """Of payload and header together; a hub drops what is larger."""
         fields = self.message.DESCRIPTOR.fields
-        long = any(field.is_repeated or field.type == field.TYPE_STRING for field in fields)
-        return LONG_BYTES if long else SHORT_BYTES
+        if any(field.is_repeated and field.message_type for field in fields):
+            return LONG_BYTES
+        if any(field.is_repeated or field.type == field.TYPE_STRING for field in fields):
+            return MIDDLE_BYTES
+        return SHORT_BYTES
 
     @property
     def most_waiting(self) -> int:
@@ -139,6 +144,14 @@ MOVE = Topic("robot/{robot}/move", pb.Move, "one transition learnt", None, Deliv
 BEST_PATH = Topic("robot/{robot}/best_path", pb.BestPath, "every ten moves", None, Delivery.EVERY, True)
 PATH = Topic("robot/{robot}/path", pb.PathRemembered, "a path entered the memory", None, Delivery.EVERY, True)
 REPLAY = Topic("robot/{robot}/replay", pb.Replay, "a replay ended", None, Delivery.EVERY, True)
+BEST_MOVES = Topic(
+    "robot/{robot}/best_moves",
+    pb.BestMoves,
+    "its internal state, if another may access it",
+    None,
+    Delivery.EVERY,
+    True,
+)
 STATUS = Topic("robot/{robot}/status", pb.Status, "activity and health", 1.0, Delivery.NEWEST, True)
 EVENT = Topic("robot/{robot}/event", pb.Event, "what a person should know", None, Delivery.EVERY, True)
 TRACKER_EVENT = Topic(
@@ -184,6 +197,7 @@ TABLE: tuple[Topic[Any], ...] = (
     BEST_PATH,
     PATH,
     REPLAY,
+    BEST_MOVES,
     STATUS,
     EVENT,
     VISIT,

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from swarm.errors import RunFailedError, UserError
 from swarm.files import write_json, write_whole
 from swarm.gridworld.condition import Condition
+from swarm.table_files import as_parquet
 
 if TYPE_CHECKING:
     import polars as pl
@@ -75,7 +76,7 @@ class RunStore:
                 "ratios": pl.Series(list(trace.ratios), dtype=pl.List(pl.Float64)),
             }
         )
-        write_whole(self._path(condition, run), lambda path: frame.write_parquet(path, compression="zstd"))
+        write_whole(self._path(condition, run), as_parquet(frame, compression="zstd"))
 
     def load(self, condition: Condition, run: int) -> pl.DataFrame:
         """The rows of one run, a learner each."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import chain, combinations, islice
 from typing import Any
 
+from swarm.errors import UserError
 from swarm.geometry import Move
 from swarm.learning.learner import Choice, Learner, LearnerSnapshot, MoveRecord, Transition
 from swarm.learning.memory import ObservedPath
@@ -22,6 +23,8 @@ from swarm.messages import topics
 from swarm.replay.comparison import Difference, is_same, move_differences, recorded_replay, told
 from swarm.replay.recorded import RecordedLearning, Said
 
+ACCESS = "access"
+"""Of a path whose moves another robot's internal state decides."""
 GIVEN = "given"
 """Of a path that every start of a robot's process has from the experiment, whatever is in the log."""
 MOST_DISPLACED = 6
@@ -237,6 +240,8 @@ class LearnerReplay:
         """What happens to a learner between its moves."""
         if isinstance(message, pb.Visit) and message.phase == pb.Visit.READY:
             self.learner.abandon()
+        elif isinstance(message, pb.PathRemembered) and message.source == ACCESS:
+            raise UserError("a robot that accesses another's internal state cannot be replayed")
         elif isinstance(message, pb.PathRemembered) and message.source != GIVEN:
             self._remember(ObservedPath(tuple(map(Move, message.moves))))
 
@@ -277,10 +282,14 @@ def _transition(recorded: pb.Move) -> Transition:
     )
 
 
+INTERRUPTIONS = ("displaced", "estop", "server_lost")
+"""Events after which a move may not have been learnt from."""
+
+
 def displaced_from(said: Said) -> int | None:
-    """The cell that a robot was standing in or leaving when it was carried away, by its event."""
+    """The cell that a robot was standing in or leaving when it was carried away or stopped, by its event."""
     message = said.message
-    if not isinstance(message, pb.Event) or message.name != "displaced":
+    if not isinstance(message, pb.Event) or message.name not in INTERRUPTIONS:
         return None
     cell = re.search(r"cell (\d+)", message.text)
     return int(cell[1]) if cell else None

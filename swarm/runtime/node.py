@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
+from itertools import chain
 from typing import Any, Protocol, TypeVar
 
 from google.protobuf.message import Message
@@ -14,10 +15,11 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import ACCOUNT, Delivery, Topic, topic_of
-from swarm.runtime.account import pack_account
+from swarm.runtime.account import Account
 from swarm.runtime.clock_offset import ClockOffset, described
 from swarm.runtime.link_lag import LinkLag
 from swarm.runtime.liveliness import ALIVE_SERVER, ServerWatch
+from swarm.runtime.receipts import Receipts
 from swarm.runtime.senders import BelievedSenders
 from swarm.runtime.spool import Spool
 from swarm.runtime.subscription import Subscription
@@ -36,8 +38,8 @@ HELD = 64
 class Node(Protocol):
     """The same for real time and for lockstep, so that no process knows which it is in."""
 
-    keys_received: set[str]
-    """Every key of which this process received a message."""
+    received: Receipts
+    """All that has reached this process."""
     run_id: str
     """The run that this process takes part in; empty in a lockstep."""
 
@@ -121,17 +123,18 @@ class LivePublisher:
         """Key -> the number of its last message."""
         return self._sequencer.last
 
-    def give_account(self, name: str) -> None:
-        """Tell the server, as the last thing, how many messages of each key have been sent; also by earlier
-        starts of this process, of what must not be lost.
+    def give_account(self, name: str, received: Receipts) -> None:
+        """Tell the server, as the last thing, how much has been sent and received; before it, what earlier
+        starts of this process have sent of what must not be lost.
         """
         publisher = self._session.publisher(ACCOUNT.format(name=name), Delivery.EVERY)
-        accounts: dict[int, dict[str, int]] = {self.epoch: dict(self.sent)}
+        earlier: dict[int, dict[str, int]] = {}
         for item in self._spool.left if self._spool else ():
-            accounts.setdefault(item.header.epoch, {})[item.key] = item.header.sequence
-        for epoch, sent in accounts.items():
+            earlier.setdefault(item.header.epoch, {})[item.key] = item.header.sequence
+        accounts = [(epoch, Account(sent)) for epoch, sent in earlier.items()]
+        for epoch, account in [*accounts, (self.epoch, Account(self.sent, received.counts()))]:
             header = Header(epoch, 1, self._clock.now_ns())
-            publisher.put(pack_account(sent), attachment=header.pack())
+            publisher.put(account.pack(), attachment=header.pack())
 
 
 class LiveNode:
@@ -162,7 +165,7 @@ class LiveNode:
             self._live.repeat(spool.left)
         self._lag = LinkLag(clock.speed)
         self._inboxes: list[tuple[Inbox, Subscription[Any], deque[WireSample]]] = []
-        self.keys_received: set[str] = set()
+        self.received = Receipts()
         self._run_states = self.subscribe(topics.RUN_STATE)
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
@@ -184,8 +187,8 @@ class LiveNode:
         return self._lag.seconds(self._clock.now_ns())
 
     def give_account(self, name: str) -> None:
-        """Tell the server, as the last thing, how many messages of each key this process has sent."""
-        self._live.give_account(name)
+        """Tell the server, as the last thing, how much this process has sent and received."""
+        self._live.give_account(name, self.received)
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):
@@ -210,11 +213,13 @@ class LiveNode:
     def _take_in(self) -> None:
         arrived = [inbox.poll() for inbox, _, _ in self._inboxes]
         self._senders.look()
+        for sample in chain.from_iterable(arrived):
+            header = Header.unpack(sample.attachment)
+            self.received.heard(sample.key, header.epoch if header else 0, sample.payload)
         for samples, (_, subscription, held) in zip(arrived, self._inboxes, strict=True):
             waiting = [*held, *samples]
             held.clear()
             for sample in waiting:
-                self.keys_received.add(sample.key)
                 header = Header.unpack(sample.attachment)
                 if header and not self._believes(sample.key, header):
                     held.append(sample)

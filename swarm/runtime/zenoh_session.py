@@ -11,6 +11,7 @@ import json
 import os
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -29,7 +30,8 @@ if TYPE_CHECKING:
 ONE_THREAD = (
     "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
 )
-"""Three threads in place of seven, and a lockstep of ten processes a fifth faster (measured)."""
+"""Three threads in place of seven, and a lockstep of ten processes a fifth faster (measured). A hub that
+strangers reach keeps the seven: with one, who makes it wait would make everybody wait."""
 QUEUE_DEPTH = 65_536
 """Messages; fifty robots send some thousand a second: room for more than half a minute."""
 NEWEST_KEPT = 64
@@ -167,7 +169,8 @@ class Session:
     """
 
     def __init__(self, settings: SessionSettings, waiting: Callable[[], None] = lambda: None) -> None:
-        os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
+        if not settings.limits:
+            os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
         import zenoh
         import zenoh.ext
 
@@ -191,12 +194,16 @@ class Session:
         self.close()
 
     def close(self) -> None:
-        """Undeclare everything and leave; presence tokens vanish for the others."""
+        """Undeclare everything and leave; presence tokens vanish for the others.
+
+        Zenoh gives up after a while if another side does not read: there is nothing that is left to do then.
+        """
         atexit.unregister(self.close)
         if not self._session.is_closed():
-            while self._recovering:  # Left declared, they would keep the process alive.
-                self._recovering.pop().undeclare()  # type: ignore[no-untyped-call]
-            self._session.close()  # type: ignore[no-untyped-call]
+            with suppress(self._zenoh.ZError):
+                while self._recovering:  # Left declared, they would keep the process alive.
+                    self._recovering.pop().undeclare()  # type: ignore[no-untyped-call]
+                self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str, delivery: Delivery) -> Publisher:
         """A publisher with the delivery's guarantees."""

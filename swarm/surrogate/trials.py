@@ -13,7 +13,6 @@ import polars as pl
 from swarm.analysis.learning_curves import curve_table
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
-from swarm.files import write_table
 from swarm.learning.learner import MOVES_BETWEEN_EVALUATIONS
 from swarm.parallel import workers
 from swarm.statistics.intervals import interval
@@ -21,6 +20,7 @@ from swarm.statistics.samples import Curves, Scale, average_of_learners
 from swarm.surrogate.copies import CopyStore, load_copies
 from swarm.surrogate.durations import Durations, load_durations
 from swarm.surrogate.trial import CopiedPath, RobotTrial, TrialOutcome
+from swarm.table_files import write_table
 
 PAPER_TRIALS = 4
 """Of figures 25 and 26."""

@@ -143,7 +143,7 @@ def test_from_nothing_to_a_run_that_is_over(laboratory: DeployedLaboratory) -> N
     assert laboratory.deploy()[0]["state"] == "unchanged"
     laboratory.emulate()
     reached = laboratory.swarm("lab", "check", *files, "--reach")["findings"]
-    assert {found["level"] for found in reached} == {"good"}, reached
+    assert not [found for found in reached if found["level"] == "bad"]
 
     until(lambda: laboratory.state(laboratory.server, "swarm-server") == "stopped")
     runs = sorted((laboratory.server.folder / "swarm" / "runs").iterdir())

@@ -15,20 +15,15 @@ from tests.support.operator import Operator, Order, all_are, moves
 
 
 @pytest.fixture
-def laboratory(tmp_path: Path) -> Iterator[Laboratory]:
-    """Two learners' laboratory in which nothing runs yet."""
+def stack() -> Iterator[ExitStack]:
     with ExitStack() as stack:
-        yield Laboratory(tmp_path, stack, count=2)
+        yield stack
 
 
-@pytest.fixture
-def operator(laboratory: Laboratory) -> Iterator[Operator]:
-    with Session(SessionSettings(laboratory.endpoint)) as session:
-        yield Operator(session)
-
-
-def test_a_run_from_waiting_to_stopped(laboratory: Laboratory, operator: Operator) -> None:
+def test_a_run_from_waiting_to_stopped(tmp_path: Path, stack: ExitStack) -> None:
+    laboratory = Laboratory(tmp_path, stack, count=2)
     server = laboratory.serve()
+    operator = Operator(stack.enter_context(Session(SessionSettings(laboratory.endpoint))))
     waiting = operator.sees()
     assert waiting.phase == pb.RunState.PREPARING
     assert list(waiting.missing) == ["r0", "r1", "the tracker bridge"]

@@ -159,6 +159,7 @@ def test_a_recording_may_be_packed(tmp_path: Path) -> None:
         (MOTIVE[: MOTIVE.index("Frame,Time")], "not a sound Motive CSV"),
         (MOTIVE.replace(",Type,", ",Kind,"), "not a sound Motive CSV"),
         (QUALISYS.replace("FREQUENCY", "RATE"), "not a sound Qualisys TSV"),
+        (ARTCULT.replace("1276102516.113952", "1e99999999"), "not a sound artificial culture log"),
     ],
 )
 def test_a_file_that_is_damaged_is_named(tmp_path: Path, text: str, said: str) -> None:

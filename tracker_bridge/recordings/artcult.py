@@ -16,6 +16,8 @@ from tracker_bridge.recordings.recording import Moment, Recording, Rows
 
 UNIT_M = 0.0001
 COLUMNS = 6
+LATEST_S = Decimal(2**63 // NS_PER_S)
+"""The year 2262, where 64 bits of nanoseconds end."""
 
 
 def is_it(rows: Rows) -> bool:
@@ -28,7 +30,15 @@ def read(rows: Rows) -> Recording:
 
 def _moment(row: list[str]) -> Moment:
     robot, time, x, y, z, _ = row
-    return Moment(int(Decimal(time) * NS_PER_S), [Body(robot, (float(x), float(y), float(z)), None)])
+    return Moment(_time_ns(time), [Body(robot, (float(x), float(y), float(z)), None)])
+
+
+def _time_ns(text: str) -> int:
+    """In full, which a float's 53 bits do not hold; ValueError if it is no date that a log can have."""
+    time_s = Decimal(text)
+    if not 0 <= time_s <= LATEST_S:
+        raise ValueError(f"{text[:20]!r} is no time")
+    return int(time_s * NS_PER_S)
 
 
 def _is_number(text: str) -> bool:

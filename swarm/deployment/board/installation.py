@@ -62,6 +62,7 @@ def _install_release(board: Board, request: Request) -> None:
         "experiment": request["experiment"],
         "files": digests,
         "virtual_environment": request["program"],
+        "build": request["build"],
         **versions,
     }
     (place / COMPLETE).write_text(json.dumps(about))

@@ -168,11 +168,12 @@ def test_a_faulty_camera_ends_the_watch(word: str, failed: str) -> None:
 
 @pytest.mark.parametrize("kind", ["random", "expert"])
 def test_rendered_demonstrations_are_copied(kind: str) -> None:
-    """12 of the benchmark's (tests/benchmarks/rendered_copying.py), which allows one list in a hundred."""
-    for observed in observed_demonstrations(EXPERIMENT, kind, 12, seed=1):
+    """Six of the benchmark's (tests/benchmarks/rendered_copying.py), which allows one list in a hundred."""
+    for observed in observed_demonstrations(EXPERIMENT, kind, 6, seed=1):
         assert observed.copied_moves == tuple(map(int, observed.demonstration.moves))
 
 
+@pytest.mark.long
 def test_the_papers_way_copies_worse() -> None:
     """Small frames, counted pixels and regression lines: many lists are wrong, and few are refused."""
     experiment = offline_experiment(CopyProfile.PAPER)

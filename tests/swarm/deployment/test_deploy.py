@@ -85,6 +85,15 @@ south_west_m = [{0.15 + 1.5 * number}, 0.3]
         assert (done.exit_code == 0) == all(machine["state"] != "failed" for machine in machines)
         return machines
 
+    def bad_on_reach(self) -> list[dict[str, Any]]:
+        """What `swarm lab check --reach` finds bad."""
+        call = ["lab", "check", str(self.directory / "lab.toml"), "--reach", "--json"]
+        done = CliRunner().invoke(app, call)
+        found = json.loads(done.stdout)["findings"]
+        bad = [finding for finding in found if finding["level"] == "bad"]
+        assert done.exit_code == bool(bad)
+        return bad
+
     def running(self) -> list[int]:
         """The process ids of all services."""
         states = self.directory.glob("board-*/services/*.json")
@@ -157,6 +166,11 @@ def test_a_laboratory_from_nothing_to_its_second_version_and_back(laboratory: La
     assert second[2]["reason"].endswith("; the release before runs again")
     assert laboratory.releases() == [second[0]["release"], second[1]["release"], first[2]["release"]]
 
+    (unlike,) = laboratory.bad_on_reach()
+    assert unlike["about"] == "r3 on 127.0.0.3"
+    assert "program 1.0" in unlike["found"]
+    assert "the others have program 2.0" in unlike["found"]
+
     laboratory.write("2.0", of_r2='calibration = "camera.toml"\n')
     (laboratory.directory / "camera.toml").write_text("")
     third = laboratory.deploy("--interrupt")
@@ -164,6 +178,8 @@ def test_a_laboratory_from_nothing_to_its_second_version_and_back(laboratory: La
     assert [machine["copied"] for machine in third] == [[], [], []], "the wheels were there"
     assert third[1]["changes"] == ["agent-r2.env", "camera-r2.toml"]
     assert third[2]["changes"] == ["program"]
+
+    assert not laboratory.bad_on_reach()
 
     back = laboratory.deploy("--rollback")
     assert states(back) == ["rolled back"] * 3
