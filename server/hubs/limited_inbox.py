@@ -18,7 +18,7 @@ from swarm.runtime.zenoh_session import Session, WireSample
 UNRATED_PER_S = 20.0
 """Of what comes as it happens: a robot makes a move or two a second."""
 AT_ONCE = 1000
-"""After a gap in the radio, or at a start that tells of many paths; more of what a server asks for."""
+"""After a gap in the radio, or at a start that tells of many paths; a robot keeps less for a server."""
 TOLD_EVERY_S = 10.0
 
 
@@ -32,7 +32,7 @@ class LimitedInbox:
         self.key = topic.key(robot)
         listen = session.recovering_inbox if topic.is_recovered else session.inbox_of_others
         self._inbox = listen(self.key, topic.most_waiting)
-        self._at_once = topic.most_waiting if topic.is_recovered else min(AT_ONCE, topic.most_waiting)
+        self._at_once = min(AT_ONCE, topic.most_waiting)
         self._per_s = (FASTER * topic.rate_hz if topic.rate_hz else UNRATED_PER_S) * speed
         self._allowed = float(self._at_once)
         self._tell = tell

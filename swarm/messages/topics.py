@@ -56,7 +56,9 @@ LONG_BYTES = 65_536 + 24
 
 
 ROOM_BYTES = 8 << 20
-"""Under one key: 8,000 short messages, some hours of a robot's moves, or 127 of the longest."""
+"""Under one key: 8,000 short messages, or 127 of the longest."""
+KEPT = 900
+"""Half an hour of a robot's moves, which stands while no server is there; what a hub takes in at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,10 +91,13 @@ class Topic(Generic[M]):
 
     @property
     def most_waiting(self) -> int:
-        """How many messages under one of its keys are kept at most: by a server that looks later, and by a
-        sender whose server may have missed them.
-        """
+        """How many messages under one of its keys wait at most until a server looks."""
         return ROOM_BYTES // self.largest_bytes
+
+    @property
+    def kept(self) -> int:
+        """How many messages under one of its keys a sender keeps for a server that missed them."""
+        return min(KEPT, self.most_waiting * 9 // 10)
 
     @property
     def is_recovered(self) -> bool:

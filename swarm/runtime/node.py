@@ -102,17 +102,21 @@ class LivePublisher:
         return item
 
     def repeat(self, items: Iterable[Item]) -> None:
-        """Send what an earlier start of this process has sent, as it was, for a server that missed it."""
+        """Send the last that earlier starts of this process have sent, as it was, for a server that missed it."""
+        by_key: dict[str, list[Item]] = {}
         for item in items:
-            found = topic_of(item.key)
-            if found:
-                self._put(item, found[0])
+            by_key.setdefault(item.key, []).append(item)
+        for key, of_key in by_key.items():
+            if found := topic_of(key):
+                topic, _ = found
+                for item in of_key[-topic.kept :]:
+                    self._put(item, topic)
 
     def _put(self, item: Item, topic: Topic[Any]) -> None:
         if item.key not in self._publishers:
             session = self._session
             self._publishers[item.key] = (
-                session.keeping_publisher(item.key, topic.most_waiting)
+                session.keeping_publisher(item.key, topic.kept)
                 if topic.is_recovered
                 else session.publisher(item.key, topic.delivery)
             )
