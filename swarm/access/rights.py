@@ -23,6 +23,8 @@ class Act(Enum):
     HEAR = "hear"
     ASK = "ask"
     ANSWER = "answer"
+    REPEAT = "repeat"
+    """Answer for what lies below it with samples of its own: what was said under it, once more."""
     SHOW = "show"
     """Show presence under it."""
     SEE = "see"
@@ -124,7 +126,7 @@ def _observer(identity: Identity, known: Known, robots: Sequence[str]) -> Iterat
 def _sent(topic: Topic[Any], robots: Sequence[str]) -> Iterator[Right]:
     """To send a topic, and to answer a server that missed some of it."""
     yield from _each(Act.SEND, topic, robots)
-    yield from _each(Act.ANSWER, topic, robots) if topic.is_recovered else ()
+    yield from _each(Act.REPEAT, topic, robots) if topic.is_recovered else ()
     yield from _recovery((Act.ANSWER, Act.SEND, Act.SHOW), topic, robots)
 
 

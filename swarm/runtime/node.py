@@ -102,7 +102,7 @@ class LivePublisher:
         return item
 
     def repeat(self, items: Iterable[Item]) -> None:
-        """Send the last that earlier starts of this process have sent, as it was, for a server that missed it."""
+        """Send the last that earlier starts have sent, as it was, for a server that missed it."""
         by_key: dict[str, list[Item]] = {}
         for item in items:
             by_key.setdefault(item.key, []).append(item)
