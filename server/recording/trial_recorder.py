@@ -30,6 +30,8 @@ from swarm.messages.topics import Delivery, topic_of
 
 About = Callable[[int], Mapping[str, Mapping[str, str]]]
 """The metadata of a part."""
+Accounts = Mapping[Sender, int] | None
+"""The last number of each sender by its own account; None if the hub had everything that was sent."""
 MB = 1_000_000
 S_PER_H = 3600
 MORE_BYTES = 16 << 20
@@ -59,7 +61,8 @@ class TrialRecorder:
         self._latched = latched
         self._free = free
         self._recovered = recovered
-        self._part = first_part
+        self._part = first_part - 1
+        """The number of the file that was begun last."""
         self._unflushed: list[Batch] = []
         """What a file that cannot be written any more would lack."""
         self._arena: Message | None = None
@@ -68,8 +71,8 @@ class TrialRecorder:
         """Whether what comes next goes into another file."""
         self._messages = 0
         self._disk_error = ""
-        self._abandoned: list[Path] = []
-        """Files that the disk took no more of."""
+        self._abandoned: Path | None = None
+        """The file that the disk took no more of."""
         self.left_out = LeftOut()
         self.waits_for = ""
         """What keeps the trial from being recorded; empty while it is."""
@@ -118,17 +121,8 @@ class TrialRecorder:
             self._unflushed.clear()
             self._look_at_limits(self._recorder)
 
-    def end(
-        self,
-        state: str,
-        reason: str,
-        accounts: Mapping[Sender, int] | None,
-        receipts: Sequence[Receipt] = (),
-    ) -> None:
-        """Write how the trial ended, and what every sender has sent by its own account.
-
-        `accounts` is None if the hub had everything that was sent.
-        """
+    def end(self, state: str, reason: str, accounts: Accounts, receipts: Sequence[Receipt] = ()) -> None:
+        """Write how the trial ended, and what every sender has sent by its own account."""
         if self._recorder is None:
             self._go_on(reserve=False)
         if self._recorder:
@@ -156,7 +150,6 @@ class TrialRecorder:
     def _end_file(self, reason: str) -> None:
         self._try(lambda recorder: self._end(recorder, CONTINUED, reason, {}))
         self.close()
-        self._part += 1
         self._is_due = False
 
     def _end(
@@ -174,13 +167,12 @@ class TrialRecorder:
 
     def _go_on(self, *, reserve: bool = True) -> None:
         """Begin the next file, if there is room for one, with what it has to hold."""
-        place = self._path_of(self._part).parent
+        place = self._path_of(self._part + 1).parent
         lack = lack_of_room(place, self._free, MORE_BYTES) if reserve else ""
         try:
-            while self._abandoned and not lack:
-                close_log(self._abandoned[0], {"state": CONTINUED, "reason": "the disk took no more"})
-                self._abandoned.pop(0)
-            self._recorder = None if lack else self._opened()
+            if not lack:
+                self._close_abandoned()
+                self._recorder = self._opened()
         except (OSError, RunFailedError, UserError) as error:
             lack = str(error)
         self.waits_for = lack
@@ -190,20 +182,32 @@ class TrialRecorder:
             self.write_view(ARENA, self._arena, self._t_ns)
         self._try(self._write_unflushed)
 
+    def _close_abandoned(self) -> None:
+        """Close the file that the disk took no more of; one without a message goes, and leaves its number."""
+        if self._abandoned is None:
+            return
+        close_log(self._abandoned, {"state": CONTINUED, "reason": "the disk took no more"})
+        if not closed_path(self._abandoned).exists():
+            self._part -= 1
+        self._abandoned = None
+
     def _write_unflushed(self, recorder: Recorder) -> None:
         for batch in self._unflushed:
             recorder.write(batch)
 
     def _opened(self) -> Recorder:
         self._before = dict(self._latched.last)
-        latched = self._latched.records() | self._continues() if self._part > 1 else {}
+        part = self._part + 1
+        latched = self._latched.records() | self._continues() if part > 1 else {}
         self._began_ns = self._t_ns
-        path = open_path(self._path_of(self._part))
-        return Recorder(path, {**self._about(self._part), **latched}, left_out=self.left_out)
+        path = open_path(self._path_of(part))
+        recorder = Recorder(path, {**self._about(part), **latched}, left_out=self.left_out)
+        self._part = part
+        return recorder
 
     def _continues(self) -> dict[str, dict[str, str]]:
-        """Which file this one goes on from, by its hash chain."""
-        before = self._path_of(self._part - 1)
+        """Which file the next one goes on from, by its hash chain."""
+        before = self._path_of(self._part)
         try:
             return {CONTINUES: {"log": before.name, "sha256": last_link(LogReader(before).read_metadata())}}
         except LogError:
@@ -219,9 +223,8 @@ class TrialRecorder:
             recorder, self._recorder = self._recorder, None
             self.waits_for = self._disk_error = in_words(error)
             self._messages += recorder.messages
-            self._part += 1
             recorder.abandon()
-            self._abandoned.append(recorder.path)
+            self._abandoned = recorder.path
 
     def _kept(self, batch: Batch) -> Batch:
         """What of a batch must not be lost."""

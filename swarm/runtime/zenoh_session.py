@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     import zenoh
     from zenoh.ext import AdvancedPublisher, AdvancedSubscriber
 
+    Recovering = AdvancedSubscriber[zenoh.handlers.Handler[zenoh.Sample]]
+    Samples = zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]] | Recovering
+
 ONE_THREAD = (
     "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
 )
@@ -78,12 +81,6 @@ class WireSample:
     key: str
     payload: bytes
     attachment: bytes
-
-
-class Samples(Protocol):
-    """A subscriber of Zenoh's, of either kind."""
-
-    def try_recv(self) -> zenoh.Sample | None: ...
 
 
 class Inbox:
@@ -180,7 +177,7 @@ class Session:
         self._tokens: list[zenoh.LivelinessToken] = []
         self._listening: list[zenoh.Subscriber[None]] = []
         self._answering: list[zenoh.Queryable[None]] = []
-        self._recovering: list[AdvancedSubscriber[zenoh.handlers.Handler[zenoh.Sample]]] = []
+        self._recovering: list[Recovering] = []
         try:
             self._session = in_background(partial(_opened, settings), waiting)
         except zenoh.ZError as error:
@@ -222,10 +219,7 @@ class Session:
         )
 
     def keeping_publisher(self, key: str, depth: int) -> Publisher:
-        """A publisher of what must not be lost: it keeps the newest, for a `recovering_inbox`.
-
-        How they come to terms is Zenoh's own, under the keys of `RECOVERY`.
-        """
+        """A publisher that keeps the newest for a `recovering_inbox`; they talk under the keys of `RECOVERY`."""
         ext = self._zenoh.ext
         return Publisher(
             ext.declare_advanced_publisher(
