@@ -25,6 +25,8 @@ class InterruptedRun:
     """All of the run."""
     results: dict[int, TrialResult]
     """Of those that are complete."""
+    changes: tuple[str, ...]
+    """What `--set` said; the experiment has it."""
     simulation: Simulation | None
     """None for a run on the robots of a laboratory."""
 
@@ -40,7 +42,7 @@ class InterruptedRun:
             trials = tuple(dict.fromkeys(int(record["trial"]) for record in manifest["trials"]))
             (seed,) = {int(record["seed"]) for record in manifest["trials"]}
             run_id, moves = str(manifest["run_id"]), int(manifest["moves"])
-            simulation = manifest["simulation"]
+            simulation, changes = manifest["simulation"], tuple(map(str, manifest["set"]))
             results = {int(trial): TrialResult(**found) for trial, found in manifest["results"].items()}
             simulated = None if simulation is None else Simulation(**simulation)
         except (AttributeError, KeyError, TypeError, ValueError) as error:
@@ -49,7 +51,7 @@ class InterruptedRun:
             raise UserError(f"{path}: all trials of the run are complete; there is nothing to resume")
         experiment = Experiment.load(path / EXPERIMENT).changed(seed=seed, moves=moves)
         directory = RunDirectory(path, is_new=False)
-        return cls(directory, experiment, run_id, trials, results, simulated)
+        return cls(directory, experiment, run_id, trials, results, changes, simulated)
 
 
 def _manifest(path: Path) -> dict[str, Any]:

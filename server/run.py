@@ -1,4 +1,4 @@
-"""A run: its trials one after the other, each in an environment of its own."""
+"""A run: its trials, each in an environment of its own, and what they leave behind."""
 
 from __future__ import annotations
 
@@ -6,32 +6,21 @@ import socket
 import sys
 import time
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 from typing import Any
 
-from server.conductor.conductor import Conductor
-from server.conductor.earlier import earlier_progress
-from server.conductor.run_control import RunControl
-from server.control.desk import Desk
-from server.control.status_board import StatusBoard
-from server.processes.environment import Environment, TrialEnvironment, TrialPlan
+from server.experiment_text import experiment_bytes
+from server.processes.environment import Environment
 from server.progress import RunProgress
-from server.recording.foxglove_views import Views
-from server.recording.health import Health
-from server.recording.latched import LatchedState
-from server.recording.provenance import metadata, versions
+from server.recording.provenance import versions
 from server.recording.recorder import digest
-from server.recording.trial_recorder import TrialRecorder
 from server.run_directory import MANIFEST, RunDirectory
-from server.trial import Trial, TrialResult
+from server.trial import TrialResult
+from server.trial_player import TrialPlayer, play_together
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, in_words
-from swarm.runtime.emergency_latch import EmergencyLatch
-from swarm.runtime.identity import RunIdentity
 
 
 @dataclass(frozen=True)
@@ -56,10 +45,16 @@ class Run:
     progress: RunProgress
     run_id: str = ""
     """Random, and new with every run; empty in a lockstep, which nobody can join and anybody can repeat."""
+    changes: Sequence[str] = ()
+    """What `--set` said in place of the file's values; the experiment has it."""
+    jobs: int = 1
+    """Trials at a time; more than one on simulated robots in lockstep alone."""
+    scheduler: str = "processes"
+    """Where those are played, if there are several at a time."""
     simulation: Simulation | None = None
     """How it is simulated; None on the robots of a laboratory."""
     results: dict[int, TrialResult] = field(default_factory=dict)
-    """Of the trials so far; those that an earlier server completed are not repeated."""
+    """By trial; those that an earlier server completed are not repeated."""
     versions: dict[str, str] = field(default_factory=versions)
 
     def run(self) -> dict[str, Any]:
@@ -69,19 +64,11 @@ class Run:
 
     def _held(self) -> dict[str, Any]:
         began = time.monotonic()
-        copy = self._begin()
+        kept = self._begin()
         to_do = [trial for trial in self.trials if trial not in self.results]
         state = "interrupted"
         try:
-            for trial in to_do:
-                self.progress.begin(trial)
-                self._trial(trial, copy)
-                self._write_manifest("running")
-                if self.results[trial].stopped:
-                    state = "stopped"
-                    break
-            else:
-                state = "complete"
+            state = self._play(to_do, kept)
         finally:
             self._write_manifest(state)
             summary = self._summary(to_do, time.monotonic() - began)
@@ -93,64 +80,43 @@ class Run:
         """What stands in the directory before the first trial; nothing is left if there is no room for it."""
         try:
             self.directory.reserve()
-            copy = self.directory.keep_experiment(self.file)
+            kept = self.directory.keep_experiment(experiment_bytes(self.file, self.changes))
             self.directory.close_logs()
             self._write_manifest("running")
         except OSError as error:
             self.directory.remove()
             raise UserError(f"{self.directory.path}: {in_words(error)}") from error
-        return copy
+        return kept
 
-    def _trial(self, trial: int, file: Path) -> None:
-        """Also of a trial that is interrupted it is known how far it came.
-
-        On robots a trial goes on from there; a simulated one begins again, and comes to the same.
-        """
-        if self.simulation:
-            self.directory.set_aside(trial)
-        program = self.versions["swarm-runtime"]
-        identity = RunIdentity.of(self.experiment, trial, self.run_id, program)
-        logs, latched = self.directory.logs(trial), LatchedState(self.experiment)
-        latched.take_up(logs)
-        plan = TrialPlan(identity, file, self.directory.output(trial), latched.last)
-        with self.environment(plan) as environment:
-            played = self._assembled(environment, identity, file, latched)
-            try:
-                with self._reached(environment):
-                    played.run()
-            finally:
-                self.results[trial] = played.result()
-
-    def _assembled(
-        self, environment: TrialEnvironment, identity: RunIdentity, file: Path, latched: LatchedState
-    ) -> Trial:
-        """A trial, put together from its parts; it goes on from what earlier servers recorded of it."""
-        experiment, reporter, prompts = self.experiment, environment.reporter, environment.prompts
-        trial, hub = identity.trial, environment.hub
-        board = StatusBoard(experiment, identity, prompts, lambda: hub.missing)
-        latch = EmergencyLatch(self.directory.emergency if environment.session else None)
-        robots = [robot.id for robot in experiment.robot]
-        control = RunControl(robots, reporter, latch, prompts, board.pose_of)
-        carrier, earlier = environment.carrier, earlier_progress(self.directory.logs(trial))
-        conductor = Conductor(experiment, identity, reporter, carrier, control, earlier)
-        desk = None
-        if environment.session:
-            desk = Desk(environment.session, control, board, prompts, conductor, reporter)
-        recorder = TrialRecorder(
-            partial(self.directory.log, trial),
-            partial(metadata, experiment, file, identity, self.versions),
-            experiment.log,
-            latched,
-            self.directory.next_part(trial),
-            recovered=lambda: hub.recovered,
+    def _play(self, trials: Sequence[int], file: Path) -> str:
+        """One after the other, or several at a time; what became of them."""
+        player = TrialPlayer(
+            self.experiment,
+            file,
+            self.changes,
+            self.directory,
+            self.versions,
+            self.run_id,
+            is_repeatable=self.simulation is not None,
         )
-        health, views = Health(reporter), Views(experiment)
-        return Trial(environment, conductor, recorder, health, views, self.progress.show, desk)
+        if self.jobs > 1:
+            play_together(player, trials, self.scheduler, self.jobs, self._note_and_show)
+            return "complete"
+        for trial in trials:
+            self.progress.begin(trial)
+            player.play(trial, self.environment, self.progress.show, self._note)
+            if self.results[trial].stopped:
+                return "stopped"
+        return "complete"
 
-    def _reached(self, environment: TrialEnvironment) -> AbstractContextManager[None]:
-        """Where people find a run that they can steer."""
-        session = environment.session
-        return self.directory.reached_at(session.endpoint) if session else nullcontext()
+    def _note(self, trial: int, result: TrialResult) -> None:
+        self.results[trial] = result
+        if result.complete:
+            self._write_manifest("running")
+
+    def _note_and_show(self, trial: int, result: TrialResult) -> None:
+        self._note(trial, result)
+        self.progress.played(trial, len(self.results))
 
     def _summary(self, done: Sequence[int], wall_s: float) -> dict[str, Any]:
         """Of the run; its pace is that of the trials that this server has done."""
@@ -193,7 +159,7 @@ class Run:
             for trial in self.trials
             for robot in self.experiment.robot
         ]
-        about = {"name": run.name, "run_id": self.run_id, "moves": run.moves}
+        about = {"name": run.name, "run_id": self.run_id, "moves": run.moves, "set": list(self.changes)}
         simulation = asdict(self.simulation) if self.simulation else None
         content = {**about, "simulation": simulation, "trials": records, "results": complete}
         self.directory.write_json(MANIFEST, content)

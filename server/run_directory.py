@@ -53,10 +53,12 @@ class RunDirectory:
         finally:
             os.close(descriptor)
 
-    def keep_experiment(self, file: Path) -> Path:
-        """A copy of the experiment file, byte for byte; in a run that goes on it is there."""
-        copy = self.path / EXPERIMENT
-        return Path(shutil.copyfile(file, copy)) if self.is_new else copy
+    def keep_experiment(self, experiment: bytes) -> Path:
+        """The experiment file as it is run; in a run that goes on it is there."""
+        kept = self.path / EXPERIMENT
+        if self.is_new:
+            kept.write_bytes(experiment)
+        return kept
 
     def log(self, trial: int, part: int = 1) -> Path:
         """Where a part of a trial's log is, once it is closed."""

@@ -31,6 +31,8 @@ class TrialResult:
 
     complete: bool
     moves: int
+    best_paths: dict[str, int]
+    """The last that each learner reported; none of who reported none."""
     sim_s: float
     messages: int
     bad_messages: int
@@ -92,6 +94,7 @@ class Trial:
         return TrialResult(
             complete=self._complete,
             moves=sum(self._conductor.moves.values()),
+            best_paths={robot: length for robot, length in self._conductor.best_path.items() if length},
             sim_s=(self._t_ns - (self._began_ns or 0)) / 1e9,
             messages=self._recorder.messages,
             bad_messages=self._conductor.bad_messages,

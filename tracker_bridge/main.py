@@ -10,6 +10,8 @@ from swarm.checkup.finding import require_good
 from swarm.config.arguments import place
 from swarm.errors import guarded
 from swarm.extras import naming_extras
+from swarm.messages import topics
+from swarm.runtime.clock_report import report_clock
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
@@ -64,6 +66,8 @@ def run(arguments: argparse.Namespace) -> None:
         plausibility = Plausibility(PlausibilitySettings(arena.width_m, arena.height_m))
         robots = [robot.id for robot in experiment.robot]
         bridge = Bridge(backend, plausibility, node, robots, experiment.pose_lateness_s, arguments.speed)
+        if not arguments.supervised:
+            report_clock(node, topics.TRACKER_EVENT)
         node.run(bridge.step)
 
 

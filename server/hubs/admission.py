@@ -17,7 +17,7 @@ from swarm.runtime.senders import EMULATOR
 MOST_STARTS = 100
 """Of one name in a run: who starts more often is ill, or makes epochs up."""
 MOST_SAID = 1000
-"""Refusals that are told one by one; a stranger may make up new epochs for ever."""
+"""Refusals that are told one by one; a stranger may make up new names for ever."""
 
 
 class Admission:
@@ -38,7 +38,7 @@ class Admission:
         reason = self._reason_against(presence)
         if reason:
             who = f"{presence.kind} {presence.name!r} on host {presence.host!r}"
-            self._say(f"{who} does not take part: {reason}")
+            self._say(f"{who} does not take part: {reason}", about=f"{who} {reason}")
         else:
             self._admitted.setdefault((presence.kind, presence.name), set()).add(presence.epoch)
         return not reason
@@ -72,7 +72,8 @@ class Admission:
             return True
         if found[0].sender is Role.OPERATOR:
             return True
-        self._say(f"messages of {item.key[:80]} from nobody who takes part (epoch {epoch}) are left out")
+        text = f"messages of {item.key[:80]} from nobody who takes part (epoch {epoch}) are left out"
+        self._say(text, about=item.key)
         return False
 
     def _reason_against(self, presence: Presence) -> str:
@@ -89,9 +90,10 @@ class Admission:
         except ValueError:
             return "it does not say of which run it is: is it of an older version?"
 
-    def _say(self, text: str) -> None:
-        if text not in self._said and len(self._said) < MOST_SAID:
-            self._said.add(text)
+    def _say(self, text: str, about: str) -> None:
+        """Once for everything that it is about."""
+        if about not in self._said and len(self._said) < MOST_SAID:
+            self._said.add(about)
             self._tell("refused", text, pb.Event.WARNING)
 
 

@@ -72,9 +72,11 @@ class Attendance:
 
     def _wait(self, name: str, key: str, presence: Presence) -> None:
         there = self._present[name]
-        if len(there) < MOST_UNDER_ONE_NAME:
-            first = next(iter(there.values()))
-            there[key] = presence
+        if len(there) >= MOST_UNDER_ONE_NAME:
+            return
+        first, *others = there.values()
+        there[key] = presence
+        if presence.host not in {other.host for other in others}:
             text = f"{name} is there already, on host {first.host}: one on host {presence.host} is left out"
             self._tell("duplicate", text, pb.Event.WARNING)
 

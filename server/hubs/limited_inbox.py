@@ -10,8 +10,9 @@ from collections.abc import Iterable
 from typing import Any
 
 from server.hubs.attendance import Tell
-from swarm.access.zenoh_rules import FASTER
+from swarm.access.zenoh_limits import FASTER
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages.header import Item
 from swarm.messages.topics import Topic
 from swarm.runtime.zenoh_session import Session, WireSample
 
@@ -41,13 +42,16 @@ class LimitedInbox:
         self._untold = 0
         self.left_out = 0
 
-    def poll(self, now_s: float) -> list[WireSample]:
-        """What has arrived since the last look and is not too much, in order; `now_s` never goes back."""
+    def poll(self) -> list[WireSample]:
+        """What has arrived since the last look, in order."""
+        return self._inbox.poll()
+
+    def limited(self, items: list[Item], now_s: float) -> list[Item]:
+        """Of what is its sender's own, what is not too much; `now_s` never goes back."""
         self._allow(now_s)
-        samples = self._inbox.poll()
-        taken = samples[: int(self._allowed)]
+        taken = items[: int(self._allowed)]
         self._allowed -= len(taken)
-        self._leave_out(len(samples) - len(taken), now_s)
+        self._leave_out(len(items) - len(taken), now_s)
         return taken
 
     def _allow(self, now_s: float) -> None:

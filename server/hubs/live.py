@@ -182,12 +182,15 @@ class LiveHub:
 
     def _received(self) -> list[Item]:
         """A sender's presence arrives before its first message, and so is looked at after the messages."""
-        now_s = time.monotonic()
-        items = [item for inbox in self._inboxes for item in self._items(inbox.poll(now_s))]
+        arrived = [(inbox, list(self._items(inbox.poll()))) for inbox in self._inboxes]
         self._attendance.look()
-        accepted = self._unheard.of(filter(self._admission.accepts, items), self._clock.now_ns())
+        now_s, now_ns = time.monotonic(), self._clock.now_ns()
+        taken: list[Item] = []
+        for inbox, items in arrived:
+            new = self._unheard.of(filter(self._admission.accepts, items), now_ns)
+            taken += inbox.limited(new, now_s)
         own, self._own = self._own, []
-        return accepted + own
+        return taken + own
 
     def _items(self, samples: Iterable[WireSample]) -> Iterator[Item]:
         for sample in samples:

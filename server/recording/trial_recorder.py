@@ -14,7 +14,6 @@ from pathlib import Path
 from google.protobuf.message import Message
 
 from server.hubs.hub import Batch
-from server.recording.foxglove_views import ARENA
 from server.recording.latched import LatchedState
 from server.recording.recorder import LeftOut, Recorder
 from swarm.checkup.machine import free_bytes, lack_of_room
@@ -26,7 +25,7 @@ from swarm.logs.ending import ACCOUNT, CONTINUED, Receipt, Sender, account_recor
 from swarm.logs.reader import LogError, LogReader
 from swarm.logs.recover import close_log
 from swarm.logs.trial_logs import closed_path, open_path
-from swarm.messages.topics import Delivery, topic_of
+from swarm.messages.topics import VIEW_ARENA, Delivery, topic_of
 
 About = Callable[[int], Mapping[str, Mapping[str, str]]]
 """The metadata of a part."""
@@ -104,7 +103,7 @@ class TrialRecorder:
 
     def write_view(self, topic: str, message: Message, t_ns: int) -> None:
         """Append a message for viewers; nobody misses it while the disk is full."""
-        if topic == ARENA:
+        if topic == VIEW_ARENA:
             self._arena = message
         self._try(lambda recorder: recorder.write_view(topic, message, t_ns))
 
@@ -179,7 +178,7 @@ class TrialRecorder:
         if self._recorder is None:
             return
         if self._arena is not None:
-            self.write_view(ARENA, self._arena, self._t_ns)
+            self.write_view(VIEW_ARENA, self._arena, self._t_ns)
         self._try(self._write_unflushed)
 
     def _close_abandoned(self) -> None:

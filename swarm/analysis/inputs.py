@@ -9,9 +9,8 @@ from pathlib import Path
 
 from swarm.errors import UserError
 from swarm.logs.identity import LogIdentity, identify
+from swarm.logs.runs import MANIFEST
 from swarm.logs.trial_logs import closed_path, joined, logs_in
-
-MANIFEST = "manifest.json"
 
 
 @dataclass(frozen=True)

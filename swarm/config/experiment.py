@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, StrEnum
 from pathlib import Path
@@ -16,6 +16,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from swarm.config.changes import changes_of
 from swarm.config.consistency import check_consistency
 from swarm.config.limits import BEYOND_CORNER_M, LARGEST_SEED, MOST_MOVES, MOST_PROCESSES
 from swarm.config.toml_files import Between, ConfigFile
@@ -291,9 +292,12 @@ class Experiment:
     log: LogSettings = field(default_factory=LogSettings)
 
     @classmethod
-    def load(cls, path: Path) -> Experiment:
-        """Read and check an experiment file; UserError names the file, the line and the cure."""
-        return cls._of(ConfigFile(path))
+    def load(cls, path: Path, changes: Iterable[str] | None = None) -> Experiment:
+        """Read and check an experiment file, with what `--set` changes in it.
+
+        UserError names the file and line, or the option, and the cure.
+        """
+        return cls._of(ConfigFile(path, changes=changes_of(changes)))
 
     @classmethod
     def of_log(cls, log: str, text: str, learning: Mapping[str, Any]) -> Experiment:

@@ -104,9 +104,10 @@ def logs_of_trial(place: Path, trial: int | None) -> list[Path]:
         return [place]
     logs = [path for path in logs_named([place]) if LOG_NAME.fullmatch(path.name)]
     trials = sorted({trial_of(path) for path in logs})
-    if not trials or (trial is not None and trial not in trials):
-        known = ", ".join(map(str, trials)) or "none"
-        raise UserError(f"{place}: holds no log of trial {trial or 0}; there is {known}")
+    if not trials:
+        raise UserError(f"{place}: holds no log (trial-NNN.mcap); is it a run directory?")
+    if trial is not None and trial not in trials:
+        raise UserError(f"{place}: holds no log of trial {trial}; there are {', '.join(map(str, trials))}")
     chosen = trials[-1] if trial is None else trial
     return sorted((path for path in logs if trial_of(path) == chosen), key=part_of)
 

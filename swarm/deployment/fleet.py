@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
+from swarm.config.experiment import Experiment
 from swarm.config.laboratory import Laboratory, Machine, RobotMachine
 
 AGENT = "swarm-agent@"
 BRIDGE = "swarm-bridge"
 SERVER = "swarm-server"
 DRIVER_EXTRAS = {"serial": "serial", "i2c": "i2c", "spi": "spi"}
-TRACKER_EXTRAS = {"motioncapture": "mocap"}
+TRACKER_EXTRAS = {"motioncapture": "mocap", "overhead": "vision", "overhead-sim": "vision"}
 """Extras of the package that a driver or a tracking system needs."""
 
 
@@ -34,12 +35,16 @@ class Target:
         hosted += ["server"] if self.conducts else []
         return f"{', '.join(hosted)} on {self.machine.host}"
 
-    @property
-    def extras(self) -> frozenset[str]:
-        """Extras of the package that have to be installed there."""
+    def extras(self, experiment: Experiment | None) -> frozenset[str]:
+        """Extras of the package that have to be installed there, for an experiment if there is one."""
         found = {DRIVER_EXTRAS.get(robot.driver, "") for robot in self.robots}
         found.add(TRACKER_EXTRAS.get(self.tracking_system or "", ""))
         found.add("lab" if self.conducts else "")
+        found.update("vision" for robot in self.robots if robot.calibration)
+        for robot in experiment.robot if experiment else ():
+            if robot.id in {hosted.id for hosted in self.robots}:
+                found.add("vision" if robot.watches else "")
+                found.add("camera" if robot.camera.startswith("/dev/") else "")
         return frozenset(found - {""})
 
     @property

@@ -87,7 +87,8 @@ class LogInfo:
             return None
         numbers = {name: int(text) if text.isdecimal() else text for name, text in said.items()}
         commit = self.metadata.get("versions", {}).get("commit")
-        return {**numbers, "commit": commit, "robots": dict(self.metadata.get("robots", {}))}
+        changes = self.metadata.get("experiment", {}).get("set", "").splitlines()
+        return {**numbers, "commit": commit, "robots": dict(self.metadata.get("robots", {})), "set": changes}
 
     @property
     def trial_ended(self) -> dict[str, str] | None:

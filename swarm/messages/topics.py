@@ -227,6 +227,8 @@ EARLIER = {"robot": "earlier-robot", "tracker": "earlier-tracker"}
 """Kinds of presence of a robot's or tracker's starts that are over: a later one repeats what they said."""
 NO_ROBOT = {topic.pattern.split("/")[0] for topic in TABLE if "{robot}" not in topic.pattern} | {"view"}
 """What the tables of a log call those who are no robot: no robot may be called so. `view` is the server's."""
+VIEW_ARENA, VIEW_ROBOTS, VIEW_LOG = "view/arena", "view/robots", "view/log"
+"""Never on the wire: what the server writes into the log for viewers, in Foxglove's schemas."""
 RUN_IDENTITY = "run/identity"
 """Asked, not published: the server answers with the run's id and every setting."""
 RUN_STATUS = "run/status"

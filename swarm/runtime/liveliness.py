@@ -11,7 +11,7 @@ from swarm.errors import UserError
 from swarm.messages.topics import ALIVE
 from swarm.runtime.zenoh_session import PresenceWatch, Session
 
-ALIVE_SERVER = "alive/server/**"
+ALIVE_SERVER = "alive/server/*/*/*/*"
 ALIVE_ROBOTS_AND_TRACKERS = "alive/*/*/*/*/*"
 
 

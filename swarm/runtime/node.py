@@ -169,6 +169,8 @@ class LiveNode:
             self._live.repeat(spool.left)
         self._lag = LinkLag(clock.speed)
         self._inboxes: list[tuple[Inbox, Subscription[Any], deque[WireSample]]] = []
+        self._first_inbox: dict[str, int] = {}
+        """By key expression: what several inboxes hear has come once."""
         self.received = Receipts()
         self._run_states = self.subscribe(topics.RUN_STATE)
 
@@ -177,6 +179,7 @@ class LiveNode:
         subscription = Subscription(topic)
         self._senders.follow(topic)
         inbox = self._session.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
+        self._first_inbox.setdefault(topic.key(robot), len(self._inboxes))
         self._inboxes.append((inbox, subscription, deque(maxlen=HELD)))
         return subscription
 
@@ -217,7 +220,7 @@ class LiveNode:
     def _take_in(self) -> None:
         arrived = [inbox.poll() for inbox, _, _ in self._inboxes]
         self._senders.look()
-        for sample in chain.from_iterable(arrived):
+        for sample in chain.from_iterable(arrived[first] for first in self._first_inbox.values()):
             header = Header.unpack(sample.attachment)
             self.received.heard(sample.key, header.epoch if header else 0, sample.payload)
         for samples, (_, subscription, held) in zip(arrived, self._inboxes, strict=True):

@@ -22,6 +22,7 @@ from typing import Any, NoReturn
 
 from swarm.clock import scaled_clock, unix_clock
 from swarm.config import arguments as values
+from swarm.config.changes import add_set_option
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.messages.topics import EARLIER
@@ -72,6 +73,7 @@ class _ShowVersion(argparse.Action):
 def add_common_arguments(parser: argparse.ArgumentParser) -> None:
     """The experiment, the server, and how time passes."""
     parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="what is run")
+    add_set_option(parser)
     parser.add_argument(
         "--connect", default=DEFAULT_ENDPOINT, metavar="tls/HOST:PORT", help="the server (%(default)s)"
     )
@@ -114,7 +116,8 @@ def session_settings(arguments: argparse.Namespace, endpoint: str, **more: Any) 
 
 def load_experiment(arguments: argparse.Namespace) -> Experiment:
     """The experiment that the command line names, with what else it says."""
-    return Experiment.load(arguments.experiment).changed(seed=arguments.seed, moves=arguments.moves)
+    experiment = Experiment.load(arguments.experiment, arguments.set)
+    return experiment.changed(seed=arguments.seed, moves=arguments.moves)
 
 
 @contextmanager

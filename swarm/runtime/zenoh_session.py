@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from swarm.access.credentials import zenoh_values
+from swarm.access.tls_check import check_certificates
 from swarm.errors import UserError
 from swarm.messages.topics import Delivery
 from swarm.runtime.background import in_background
@@ -219,7 +220,7 @@ class Session:
         )
 
     def keeping_publisher(self, key: str, depth: int) -> Publisher:
-        """A publisher that keeps the newest for a `recovering_inbox`; they talk under the keys of `RECOVERY`."""
+        """A publisher that keeps the newest for a `recovering_inbox`; they talk under keys of `RECOVERY`."""
         ext = self._zenoh.ext
         return Publisher(
             ext.declare_advanced_publisher(
@@ -329,7 +330,10 @@ def _opened(settings: SessionSettings) -> zenoh.Session:
 
     check_endpoint(settings.endpoint)
     check_protection(settings.endpoint, bool(settings.credentials or settings.config), settings.insecure)
-    return zenoh.open(_config(settings))
+    config = _config(settings)
+    if settings.credentials and not settings.hub:
+        check_certificates(settings.endpoint, settings.credentials)
+    return zenoh.open(config)
 
 
 def _keep_python_state() -> None:

@@ -38,7 +38,7 @@ class Star:
 
     def hub_address(self, link: int) -> str:
         """The hub's address as it is reached over a link."""
-        return f"10.77.{link}.1"
+        return f"10.83.{link}.1"
 
     def lose(self, link: int, share: float) -> None:
         """From now on a link loses so many of its packets, in both directions."""
@@ -48,7 +48,7 @@ class Star:
         pipe.flush()
 
     def _link(self, number: int, far: str, stack: ExitStack) -> subprocess.Popen[str]:
-        ends = (self.hub, self.hub_address(number), far, f"10.77.{number}.2")
+        ends = (self.hub, self.hub_address(number), far, f"10.83.{number}.2")
         process = subprocess.Popen(
             [sys.executable, "-m", "tests.support.lossy_link", *ends, str(number)],
             cwd=ROOT,

@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from server.hubs.hub import Batch
-from server.recording.foxglove_views import ARENA
 from server.recording.latched import LATCHED, LatchedState
 from server.recording.trial_recorder import MORE_BYTES, TrialRecorder
 from server.run_directory import RunDirectory
@@ -23,6 +22,7 @@ from swarm.logs.ending import COMPLETE
 from swarm.logs.reader import LogReader
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Header, Item
+from swarm.messages.topics import VIEW_ARENA
 from tests.support.small_logs import metadata
 from tests.support.swarm_runs import experiment_text, write_experiment
 
@@ -86,7 +86,7 @@ def hourly(tmp_path: Path) -> SegmentedLog:
     log = SegmentedLog(tmp_path / "run", LogSettings(file_h=4 * TICK_NS / 3.6e12), Disk())
     path = pb.PathRemembered(path=1, moves=[1, 2], source="given").SerializeToString()
     log.recorder.write(Batch(TICK_NS, [Item("robot/loner/path", Header(5, 1, TICK_NS), path)]))
-    log.recorder.write_view(ARENA, pb.Event(name="drawn once"), TICK_NS)
+    log.recorder.write_view(VIEW_ARENA, pb.Event(name="drawn once"), TICK_NS)
     for _ in range(12):
         log.move()
     log.close()
@@ -109,7 +109,7 @@ def test_each_file_can_be_read_and_checked_alone(hourly: SegmentedLog) -> None:
     logs = hourly.directory.logs(0)
     assert [check_log(log).faults for log in logs] == [[], [], []]
     reader = LogReader(logs[2])
-    assert ARENA in {part.channel.key for part in reader.parts()}
+    assert VIEW_ARENA in {part.channel.key for part in reader.parts()}
     latched = json.loads(reader.metadata[LATCHED]["loner"])
     begins_at = int(min(part.sequence.min() for part in reader.parts() if part.channel.key.endswith("move")))
     assert (latched["moves"], latched["paths"]) == (begins_at - 1, {"1": [1, 2]})
