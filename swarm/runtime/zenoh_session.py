@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     import zenoh
     from zenoh.ext import AdvancedPublisher, AdvancedSubscriber
 
-    Recovering = AdvancedSubscriber[zenoh.handlers.Handler[zenoh.Sample]]
-    Samples = zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]] | Recovering
+    Samples = zenoh.handlers.Handler[zenoh.Sample]
 
 ONE_THREAD = (
     "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
@@ -87,7 +86,7 @@ class WireSample:
 class Inbox:
     """Samples of one subscription, polled by the main loop."""
 
-    def __init__(self, subscriber: Samples) -> None:
+    def __init__(self, subscriber: zenoh.Subscriber[Samples] | AdvancedSubscriber[Samples]) -> None:
         self._subscriber = subscriber
 
     def poll(self) -> list[WireSample]:
@@ -130,7 +129,7 @@ class Questions:
 class PresenceWatch:
     """The presence keys that have appeared and vanished, polled by the main loop."""
 
-    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
+    def __init__(self, subscriber: zenoh.Subscriber[Samples]) -> None:
         self._subscriber = subscriber
 
     def poll(self) -> list[tuple[str, bool]]:
@@ -178,7 +177,7 @@ class Session:
         self._tokens: list[zenoh.LivelinessToken] = []
         self._listening: list[zenoh.Subscriber[None]] = []
         self._answering: list[zenoh.Queryable[None]] = []
-        self._recovering: list[Recovering] = []
+        self._recovering: list[AdvancedSubscriber[Samples]] = []
         try:
             self._session = in_background(partial(_opened, settings), waiting)
         except zenoh.ZError as error:
@@ -234,9 +233,7 @@ class Session:
         )
 
     def recovering_inbox(self, key: str, depth: int) -> Inbox:
-        """As `inbox_of_others`, and what was missed is asked for of who keeps it: sent before this began, or
-        while the link was down. A publisher's samples come in order.
-        """
+        """As `inbox_of_others`, and asks a `keeping_publisher` for what it missed, in that one's order."""
         ext = self._zenoh.ext
         subscriber = ext.declare_advanced_subscriber(
             self._session,
