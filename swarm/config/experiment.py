@@ -70,6 +70,16 @@ class RunSettings:
 
 
 @dataclass(frozen=True)
+class LogSettings:
+    """[log]: when a trial's log goes on in another file, each of which can be read alone."""
+
+    file_mb: Annotated[float, Between(0.1, 1_000_000)] = 256.0
+    """Size of a file in 10^6 bytes: a log of ten robots takes a day or so to fill one."""
+    file_h: Annotated[float, Between(0.01, 10_000)] = 24.0
+    """Hours of the run in one file."""
+
+
+@dataclass(frozen=True)
 class ArenaSettings:
     """[arena]: the floor, and the grid of every compartment."""
 
@@ -279,6 +289,7 @@ class Experiment:
     visits: VisitSettings = field(default_factory=VisitSettings)
     camera: CameraSettings = field(default_factory=CameraSettings)
     simulation: SimulationSettings = field(default_factory=SimulationSettings)
+    log: LogSettings = field(default_factory=LogSettings)
 
     @classmethod
     def load(cls, path: Path, changes: Iterable[str] | None = None) -> Experiment:

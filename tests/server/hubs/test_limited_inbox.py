@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from server.hubs.limited_inbox import AT_ONCE, ROOM_BYTES, TOLD_EVERY_S, UNRATED_PER_S, LimitedInbox
+from server.hubs.limited_inbox import AT_ONCE, TOLD_EVERY_S, UNRATED_PER_S, LimitedInbox
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
-from swarm.messages.topics import SHORT_BYTES, Delivery
+from swarm.messages.topics import ROOM_BYTES, SHORT_BYTES, Delivery
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
 
