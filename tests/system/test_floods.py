@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -120,7 +121,7 @@ def _connected(certified: CertifiedLaboratory, identity: str) -> zenoh.Session:
         try:
             return certified.client(identity)
         except zenoh.ZError:
-            time.sleep(0.1)
+            threading.Event().wait(0.1)
 
 
 def _rate_during(attack: Callable[[], None], heard: zenoh.Subscriber[zenoh.Handler[zenoh.Sample]]) -> float:
