@@ -18,6 +18,8 @@ from swarm.config.arguments import place
 from swarm.config.experiment import Experiment, RobotSettings
 from swarm.errors import UserError, guarded, nearest
 from swarm.extras import naming_extras
+from swarm.messages import topics
+from swarm.runtime.clock_report import report_clock
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
@@ -80,6 +82,8 @@ def run(arguments: argparse.Namespace) -> None:
         if arguments.state:
             for agent, name in zip(agents, names, strict=True):
                 _go_on(agent, name, arguments, node.run_id, str(identity.fingerprint))
+        if not arguments.supervised:
+            report_clock(node, topics.EVENT, names)
         try:
             node.run(partial(_step, agents))
         finally:

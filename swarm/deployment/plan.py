@@ -61,6 +61,8 @@ class Plan:
 
     release: str
     program: str
+    extras: list[str]
+    """Of the package, that the machine needs."""
     wheels: Wheels
     files: Files
     experiment: list[str]
@@ -78,6 +80,7 @@ class Plan:
             "release": self.release,
             "program": self.program,
             "experiment": self.experiment,
+            "extras": self.extras,
             "starts": self.services,
             "files": {name: b64encode(content).decode() for name, content in self.files.items()},
             **self.wheels.request(),
@@ -85,7 +88,10 @@ class Plan:
 
 
 class Planner:
-    """Plans for machines. Wheels are fetched for one machine at a time: the next of its kind finds them."""
+    """Plans for machines; with `run` the experiment is to begin at once.
+
+    Wheels are fetched for one machine at a time: the next of its kind finds them.
+    """
 
     def __init__(
         self,
@@ -94,19 +100,23 @@ class Planner:
         version: str,
         experiment: ExperimentFiles | None,
         protection: Protection,
+        *,
+        run: bool,
     ) -> None:
         self._laboratory = laboratory
         self._wheelhouse = wheelhouse
         self._version = version
         self._experiment = experiment
         self._protection = protection
+        self._run = run
         self._one_at_a_time = asyncio.Lock()
 
     async def plan(self, target: Target, found: Mapping[str, Any]) -> Plan:
         """What a machine is to run, given what it says of itself; MachineError if it cannot."""
         _check(found)
+        extras = self._extras(target, found["about"])
         async with self._one_at_a_time:
-            wheels = await asyncio.to_thread(self._wheels, target, found)
+            wheels = await asyncio.to_thread(self._wheels, target, extras, found)
         about, places = found["about"], wheels.by_place
         missing = {place: file for place, file in places.items() if place not in found["wheels"]}
         _check_room(found, missing.values())
@@ -117,6 +127,7 @@ class Planner:
         return Plan(
             release_id(program, files, services),
             program,
+            sorted(extras),
             wheels,
             files,
             sorted(experiment),
@@ -125,11 +136,17 @@ class Planner:
             _changes(program, files, services, about),
         )
 
-    def _wheels(self, target: Target, found: Mapping[str, Any]) -> Wheels:
+    def _extras(self, target: Target, about: Mapping[str, Any]) -> frozenset[str]:
+        """Of the experiment, or what the one that is kept there needed."""
+        if self._experiment:
+            return target.extras(self._experiment.experiment)
+        return target.extras(None) | set(about.get("extras", ()))
+
+    def _wheels(self, target: Target, extras: frozenset[str], found: Mapping[str, Any]) -> Wheels:
         """The server has more than the system's packages are tried with: it gets its own."""
         program = self._wheelhouse.program(self._version)
         supplied = {} if target.conducts else found["packages"]
-        needed, system_packages = requirements(program, target.extras, supplied)
+        needed, system_packages = requirements(program, extras, supplied)
         libraries = self._wheelhouse.libraries(needed, Platform.of(found))
         return Wheels(program, libraries, self._wheelhouse.installer(), system_packages)
 
@@ -141,8 +158,9 @@ class Planner:
     def _services(self, target: Target, about: Mapping[str, Any]) -> list[str]:
         """Of the experiment, or of what runs there now what still belongs there."""
         if self._experiment:
-            return target.services([robot.id for robot in self._experiment.experiment.robot])
-        everything = target.services([robot.id for robot in target.robots])
+            robots = [robot.id for robot in self._experiment.experiment.robot]
+            return target.services(robots, self._run)
+        everything = target.services([robot.id for robot in target.robots], run=True)
         return [name for name in everything if name in about["services"]]
 
 

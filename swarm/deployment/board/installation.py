@@ -60,6 +60,7 @@ def _install_release(board: Board, request: Request) -> None:
     about = {
         "services": request["starts"],
         "experiment": request["experiment"],
+        "extras": request["extras"],
         "files": digests,
         "virtual_environment": request["program"],
         "build": request["build"],

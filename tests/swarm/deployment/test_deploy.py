@@ -141,10 +141,10 @@ def states(machines: list[dict[str, Any]]) -> list[str]:
 def test_a_laboratory_from_nothing_to_its_second_version_and_back(laboratory: Laboratory) -> None:
     small_program(laboratory.wheelhouse, "1.0")
     experiment = str(laboratory.experiment)
-    assert states(laboratory.deploy(experiment, "--dry-run")) == ["would change"] * 3
+    assert states(laboratory.deploy(experiment, "--run", "--dry-run")) == ["would change"] * 3
     assert not list(laboratory.directory.glob("board-*/current")), "a dry run changes nothing"
 
-    first = laboratory.deploy(experiment)
+    first = laboratory.deploy(experiment, "--run")
     assert states(first) == ["deployed"] * 3, [machine["reason"] for machine in first]
     assert [machine["services"] for machine in first] == [
         {"swarm-server.service": "active", "swarm-bridge.service": "active"},
@@ -152,7 +152,7 @@ def test_a_laboratory_from_nothing_to_its_second_version_and_back(laboratory: La
         {"swarm-agent@r3.service": "active"},
     ]
     running = laboratory.running()
-    assert states(laboratory.deploy(experiment)) == states(laboratory.deploy()) == ["unchanged"] * 3
+    assert states(laboratory.deploy(experiment, "--run")) == states(laboratory.deploy()) == ["unchanged"] * 3
     assert laboratory.running() == running, "nobody was started anew"
 
     small_program(laboratory.wheelhouse, "2.0")
