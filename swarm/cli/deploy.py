@@ -58,7 +58,7 @@ def deploy_command(
     if rollback:
         if experiment or dry_run:
             raise UserError("--rollback goes back to what was there: leave EXPERIMENT and --dry-run out")
-        outcomes = roll_back(lab, _tell)
+        outcomes = roll_back(lab, _tell, interrupt=interrupt)
     else:
         if run and not experiment:
             raise UserError("--run begins an experiment: say which")
