@@ -27,7 +27,7 @@ class RunProgress:
         self._progress = Progress(
             TextColumn("{task.description}"),
             BarColumn(bar_width=10),
-            TextColumn("{task.completed:.0f}/{task.total:.0f} moves"),
+            TextColumn("{task.completed:.0f}/{task.total:.0f} {task.fields[what]}"),
             TextColumn("{task.fields[learning]}"),
             TimeRemainingColumn(),
             console=console,
@@ -36,7 +36,7 @@ class RunProgress:
         self._monotonic_s = monotonic_s
         self._line_due_s = monotonic_s() + LINE_EVERY_S
         self._trial = ""
-        self._task = self._progress.add_task("", total=experiment.run.moves, learning="")
+        self._task = self._progress.add_task("", total=experiment.run.moves, learning="", what="moves")
 
     def __enter__(self) -> RunProgress:
         self._progress.start()
@@ -49,7 +49,14 @@ class RunProgress:
         """A new trial, called as its log is: the bar starts again."""
         of = f" of {self._experiment.run.trials}" if self._experiment.run.trials > 1 else ""
         self._trial = f"{trial_name(trial)}{of}"
-        self._progress.reset(self._task, description=self._trial, learning="")
+        self._progress.reset(self._task, description=self._trial, learning="", what="moves")
+
+    def played(self, trial: int, count: int) -> None:
+        """Of several trials at a time one has ended: the bar counts trials."""
+        of = self._experiment.run.trials
+        self._progress.update(self._task, description="", what="trials", completed=count, total=of)
+        if self._progress.disable:
+            self._progress.console.print(f"{trial_name(trial)}: played, {count} of {of}", highlight=False)
 
     def show(self, conductor: Conductor, elapsed_s: float) -> None:
         """Moves of the slowest learner, the trial's time, and the best path of each condition."""

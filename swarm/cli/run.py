@@ -34,10 +34,14 @@ def run_command(
     """Start the server, and the tracker bridge if it is hosted here; wait for the robots; show the run.
 
     Ctrl-C ends the trial in order. The exit code is the server's: 0 if the trial is complete or was stopped.
+    A server that conducts this run already, as a service, is left alone and shown.
     """
     require_extra("lab", "small_mcap", "rich")
-    from swarm.control.laboratory_run import LaboratoryRun
+    from swarm.control.laboratory_run import LaboratoryRun, is_under_way
 
+    if is_under_way(lab, experiment, int(trial), insecure=insecure):
+        typer.echo(f"a server conducts this run already; see it with `swarm status --at {lab}`")
+        return
     options = [f"--out={out}"] if out else []
     options += ["--json"] if json else []
     run = LaboratoryRun.of(lab, experiment, options, ["--trial", trial], insecure=insecure)

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 At = Annotated[
     str, typer.Option(metavar="WHERE", help="tls/HOST:PORT, a run's directory, or a laboratory file.")
 ]
-Credentials = Annotated[Path | None, typer.Option(metavar="FILE", help="More settings of Zenoh's (JSON5).")]
 Keys = Annotated[
     Path | None,
     typer.Option(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from swarm.cli.console import Connect, Place, Trial, source_of
-from swarm.cli.steering import Credentials
+from swarm.cli.steering import Insecure, Keys
 from swarm.clock import unix_clock
 from swarm.errors import RunFailedError, UserError
 from swarm.extras import require_extra
@@ -27,7 +27,8 @@ def watch_command(
     place: Place = None,
     trial: Trial = None,
     connect: Connect = "",
-    zenoh_config: Credentials = None,
+    keys: Keys = None,
+    insecure: Insecure = False,
     move: Annotated[
         int | None, typer.Option(min=1, help="As it was after so many moves of the slowest learner.")
     ] = None,
@@ -45,7 +46,7 @@ def watch_command(
     from swarm.console.sources import POLL_S
 
     console = Console() if sys.stdout.isatty() else Console(width=160)
-    with Polling(source_of(place, trial, connect, zenoh_config), POLL_S) as run:
+    with Polling(source_of(place, trial, connect, keys, insecure), POLL_S) as run:
         with Live(console=console, auto_refresh=False, transient=True) as shown:
             for _ in unix_clock().ticks(LOOK_EVERY_S):
                 if run.trouble:

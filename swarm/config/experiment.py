@@ -1,14 +1,13 @@
 """What an experiment file says: the run, the arena, the rules of learning, the robots.
 
-`Experiment.load` is the one door: it also checks what no single value shows, such as two robots with
-one id or compartments that overlap.
+`Experiment.load` is the one door: it also checks what no single value shows, such as two robots of one id.
 """
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, StrEnum
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from swarm.config.changes import changes_of
 from swarm.config.consistency import check_consistency
 from swarm.config.limits import BEYOND_CORNER_M, LARGEST_SEED, MOST_MOVES, MOST_PROCESSES
 from swarm.config.toml_files import Between, ConfigFile
@@ -28,7 +28,6 @@ from swarm.learning.random import spawned_generator
 
 OLDEST_POSE_S = 0.9
 """A tenth below the second at which a robot stands for want of a newer pose."""
-
 
 REAL_LINKS = ("serial", "wifi", "i2c", "spi")
 """Drivers of real robots; a simulation runs them against emulated ones."""
@@ -66,6 +65,16 @@ class RunSettings:
     """What a robot does that no longer hears the server: wait after the move under way, or stop at once."""
     without_server_s: Annotated[float, Between(2, 3600)] = 5.0
     """Silence after which it does so; the run's state comes once a second, and a lost one stops nobody."""
+
+
+@dataclass(frozen=True)
+class LogSettings:
+    """[log]: when a trial's log goes on in another file, each of which can be read alone."""
+
+    file_mb: Annotated[float, Between(0.1, 1_000_000)] = 256.0
+    """Size of a file in 10^6 bytes: a log of ten robots takes a day or so to fill one."""
+    file_h: Annotated[float, Between(0.01, 10_000)] = 24.0
+    """Hours of the run in one file."""
 
 
 @dataclass(frozen=True)
@@ -278,11 +287,15 @@ class Experiment:
     visits: VisitSettings = field(default_factory=VisitSettings)
     camera: CameraSettings = field(default_factory=CameraSettings)
     simulation: SimulationSettings = field(default_factory=SimulationSettings)
+    log: LogSettings = field(default_factory=LogSettings)
 
     @classmethod
-    def load(cls, path: Path) -> Experiment:
-        """Read and check an experiment file; UserError names the file, the line and the cure."""
-        return cls._of(ConfigFile(path))
+    def load(cls, path: Path, changes: Iterable[str] | None = None) -> Experiment:
+        """Read and check an experiment file, with what `--set` changes in it.
+
+        UserError names the file and line, or the option, and the cure.
+        """
+        return cls._of(ConfigFile(path, changes=changes_of(changes)))
 
     @classmethod
     def of_log(cls, log: str, text: str, learning: Mapping[str, Any]) -> Experiment:

@@ -10,10 +10,15 @@ from pathlib import Path
 from typing import IO
 
 from swarm.access.identities import SERVER, TRACKER, Identity
+from swarm.config.experiment import Experiment
 from swarm.config.laboratory import Laboratory
-from swarm.control.reaching import keys_of
+from swarm.control.reaching import keys_of, settings_of
 from swarm.errors import UserError
 from swarm.interpreter import child_environment, module_command
+from swarm.messages.topics import RUN_IDENTITY
+from swarm.runtime.handshake import ANSWER_WITHIN_S, compared
+from swarm.runtime.identity import RunIdentity
+from swarm.runtime.zenoh_session import Session
 
 EVERYWHERE = "0.0.0.0"
 """The server listens on every network that its machine has."""
@@ -57,6 +62,19 @@ class LaboratoryRun:
                 bridge = stack.enter_context(_process(self.bridge, messages))
                 stack.callback(_end, bridge)
             yield server
+
+
+def is_under_way(file: Path, experiment: Path, trial: int, *, insecure: bool) -> bool:
+    """Whether the laboratory's server conducts this run already. UserError if it conducts another one."""
+    try:
+        session = Session(settings_of(str(file), insecure=insecure))
+    except UserError:
+        return False
+    with session:
+        answers = session.ask(RUN_IDENTITY, ANSWER_WITHIN_S)
+        if answers:
+            compared(answers[0], RunIdentity.of(Experiment.load(experiment), trial))
+    return bool(answers)
 
 
 def _protection(file: Path, identity: Identity, insecure: bool) -> list[str]:

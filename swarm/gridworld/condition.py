@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
 
 from swarm.gridworld.arena import Arena
+from swarm.learning.controller import QIncrease
 from swarm.learning.memory import Approach, ObservedPath
 
 
 @dataclass(frozen=True)
 class NoTeacher:
-    """Q-learning without imitation: an empty memory."""
+    """Q-learning without imitation: an empty memory.
+
+    Two `learners` know nothing of each other: what a pair that imitates is compared with.
+    """
+
+    learners: int = 1
 
 
 @dataclass(frozen=True)
@@ -24,12 +34,13 @@ class GivenPaths:
 class CopyExpert:
     """One who follows the arena's expert path for ever (section 2.3.2 a).
 
-    The learner copies `moves` consecutive moves from a random place of that path before its first run,
-    and again each time it has reached the goal `every` times more: 1000 portions in 100,000 runs.
+    The learner copies `moves` consecutive moves from a random place of that path each time it has reached
+    the goal `every` times more: 1000 portions in 100,000 runs; if `copies_at_once`, before its first run too.
     """
 
     moves: int = 20
     every: int = 100
+    copies_at_once: bool = False
 
 
 @dataclass(frozen=True)
@@ -37,12 +48,13 @@ class CopyExperienced:
     """One who learnt without imitation until it had reached the goal `goal_reachings` times (2.3.2 b).
 
     It goes on learning and exploring, alternately with the learner, which copies the last `moves`
-    moves of it before its first run and every `every` goal reachings of its own.
+    moves of it every `every` goal reachings of its own and, if `copies_at_once`, before its first run.
     """
 
     moves: int = 20
     every: int = 100
     goal_reachings: int = 90_000
+    copies_at_once: bool = False
 
 
 @dataclass(frozen=True)
@@ -72,13 +84,20 @@ Teacher = (
 )
 
 
+class Precision(Enum):
+    """Of the stored Q values."""
+
+    DOUBLE = "double"
+    SINGLE = "single"
+
+
 @dataclass(frozen=True)
 class Condition:
     """One curve of a figure.
 
     A run ends after `steps` time steps or when its first learner has reached the goal
     `goal_reachings` times, whichever comes first. The best path is evaluated every `evaluate_every`
-    time steps, up to `points` times.
+    time steps, up to `points` times, and from then on every `later_every` steps, up to `later_points` times.
     """
 
     name: str
@@ -93,6 +112,14 @@ class Condition:
     evaluate_every: int = 1000
     points: int | None = None
     """How many points the figure needs; None for all of `steps`."""
+    later_every: int | None = None
+    later_points: int = 0
+    increase: QIncrease = QIncrease.ASKED
+    precision: Precision = Precision.DOUBLE
+    checks_last: bool = False
+    """Whether the last action of a path undergoes the Q check."""
+    counts_luck: bool = True
+    """Whether a best path through cells in which nothing has been learnt may arrive."""
 
     def __post_init__(self) -> None:
         wrong = self._wrong()
@@ -125,7 +152,24 @@ class Condition:
         all_points = self.steps // self.evaluate_every
         return all_points if self.points is None else min(self.points, all_points)
 
+    def evaluated_steps(self, steps: int) -> NDArray[np.int64]:
+        """When the best path is evaluated in a run of so many steps (points,)."""
+        first = self.evaluate_every * np.arange(1, self.point_limit + 1)
+        if self.later_every is None:
+            return first[first <= steps]
+        last = self.evaluate_every * self.point_limit
+        later = last + self.later_every * np.arange(1, self.later_points + 1)
+        times = np.concatenate([first, later])
+        return times[times <= steps]
+
+    @property
+    def imitates(self) -> bool:
+        """Whether a learner's memory can hold a path."""
+        return not isinstance(self.teacher, NoTeacher)
+
     @property
     def learners(self) -> int:
         """Whose curves a run yields: two for a pair that teach each other, else one."""
+        if isinstance(self.teacher, NoTeacher):
+            return self.teacher.learners
         return 2 if isinstance(self.teacher, CopyEachOther | AccessEachOther) else 1

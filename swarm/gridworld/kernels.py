@@ -7,19 +7,24 @@ compiled functions stand in this one file, since numba's cache notices changes o
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar
-
 import numpy as np
 from numpy.typing import NDArray
 
-from swarm.compilation import compiled
 from swarm.geometry import MOVES
+from swarm.gridworld.kernel_options import Real, Truth, Whole, Word, called, inlined
+from swarm.gridworld.move_sets import ALL_MOVES, FIRST_MEMBER, MEMBER, SIZE
 from swarm.gridworld.splitmix import FIRST, GOLDEN, SECOND
 from swarm.gridworld.state import (
+    ASKED,
+    AVERAGE,
     COMPLETION,
+    COPIED,
     FIXED,
     NO_REPLAY,
+    SUGGESTED,
+    SUGGESTED_AT_RANDOM,
+    TRIED,
+    UNLIMITED,
     WATCHES_EXPERT,
     WATCHES_NOBODY,
     AgentArrays,
@@ -30,40 +35,12 @@ from swarm.gridworld.state import (
     Rules,
 )
 
-Whole = int | np.int64 | Any
-Real = float | Any
-Truth = bool | Any
-Word = np.uint64 | Any
-Function = TypeVar("Function", bound=Callable[..., Any])
-
-ALL_MOVES = (1 << MOVES) - 1  # a set has a bit for each of its moves
-SETS = [[move for move in range(MOVES) if mask >> move & 1] for mask in range(ALL_MOVES + 1)]
-SIZE = np.array([len(members) for members in SETS], np.uint8)
-"""How many actions a set has (256,)."""
-MEMBER = np.array([members + [0] * (MOVES - len(members)) for members in SETS], np.uint8).ravel()
-"""The k-th action of a set, at 8 x set + k (2048,)."""
-FIRST_MEMBER = MEMBER[::MOVES].copy()
-"""The first action of a set (256,)."""
-
 # Places, actions and sets of actions are unsigned: numba would look whether a signed index is negative.
 _U = np.uint64
 _GOLDEN, _FIRST, _SECOND, _MOVES, _ONE = _U(GOLDEN), _U(FIRST), _U(SECOND), _U(MOVES), _U(1)
 
-# Without numba's reference counts, which cost far more than the learning: nothing here allocates.
-_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 
-
-def _called(function: Function) -> Function:
-    """Compile as a function of its own."""
-    return compiled(function, **_OPTIONS)
-
-
-def _inlined(function: Function) -> Function:
-    """Compile into whatever calls it."""
-    return compiled(function, forceinline=True, **_OPTIONS)
-
-
-@_inlined
+@inlined
 def _mixed(word: Word) -> Word:
     """The random bits that SplitMix64 makes of its state."""
     word = (word ^ (word >> _U(30))) * _FIRST
@@ -71,42 +48,42 @@ def _mixed(word: Word) -> Word:
     return word ^ (word >> _U(31))
 
 
-@_inlined
+@inlined
 def _bits(stream: NDArray[np.uint64]) -> Word:
     """`SplitMix64.bits`."""
     stream[0] += _GOLDEN
     return _mixed(stream[0])
 
 
-@_inlined
+@inlined
 def _random(stream: NDArray[np.uint64]) -> Real:
     return np.float64(np.int64(_bits(stream) >> _U(11))) * 2.0**-53
 
 
-@_inlined
+@inlined
 def _integer(high: Whole, bits: Word) -> Word:
     """`SplitMix64.integers`, of bits already drawn."""
     return ((bits >> _U(32)) * _U(high)) >> _U(32)
 
 
-@_inlined
+@inlined
 def _member(actions: Word, bits: Word) -> Word:
     """A member of a set of actions, at random."""
     return _U(MEMBER[actions * _MOVES + _integer(SIZE[actions], bits)])
 
 
-@_inlined
+@inlined
 def _has_tie(actions: Word) -> Truth:
     return actions & (actions - _ONE) != 0
 
 
-@_inlined
+@inlined
 def _greedy(actions: Word, stream: NDArray[np.uint64]) -> Word:
     """`QTable.greedy`."""
     return _member(actions, _bits(stream)) if _has_tie(actions) else _U(FIRST_MEMBER[actions])
 
 
-@_inlined
+@inlined
 def _explored(actions: Word, rules: Rules, bits: Word, more_bits: Word) -> Word:
     """One of the greedy actions, or any; no branch waits for a random number."""
     any_move = _integer(MOVES, more_bits)
@@ -116,20 +93,20 @@ def _explored(actions: Word, rules: Rules, bits: Word, more_bits: Word) -> Word:
     return any_move if bits >> _U(11) < rules.explores_below else best
 
 
-@_inlined
+@inlined
 def _epsilon_greedy(agent: AgentArrays, rules: Rules) -> Word:
     """`Controller._epsilon_greedy`."""
     actions = _U(agent.greedy[agent.state[0]])
     return _explored(actions, rules, _bits(agent.stream), _bits(agent.stream))
 
 
-@_inlined
+@inlined
 def _neighbour(world: ArenaArrays, state: Word, action: Word) -> Word:
     """`Grid.neighbour`, or the place itself if the move is blocked."""
     return state + world.offsets[action] if (_U(world.ways[state]) >> action) & _ONE else state
 
 
-@_inlined
+@inlined
 def _ratio(agent: AgentArrays, i: Whole, approach: Whole) -> Real:
     """`ImitationMemory.ratio`."""
     if approach == FIXED:
@@ -137,7 +114,7 @@ def _ratio(agent: AgentArrays, i: Whole, approach: Whole) -> Real:
     return (agent.n_counted[i] + 1) / (agent.n_replicated[i] + 1)
 
 
-@_called
+@called
 def _weigh(agent: AgentArrays, first: Whole, approach: Whole) -> None:
     """Bring the ratios and their running sums up to date from the path `first` on."""
     total = agent.totals[first - 1] if first > 0 else 0.0
@@ -147,7 +124,7 @@ def _weigh(agent: AgentArrays, first: Whole, approach: Whole) -> None:
         agent.totals[i] = total
 
 
-@_inlined
+@inlined
 def _choose_path(agent: AgentArrays) -> Whole:
     """`ImitationMemory.choose`."""
     last = agent.remembered[0] - 1
@@ -160,7 +137,7 @@ def _choose_path(agent: AgentArrays) -> Whole:
     return chosen
 
 
-@_called
+@called
 def remember(agent: AgentArrays, rules: Rules, moves: NDArray[np.uint8], start: Whole, length: Whole) -> None:
     """`ImitationMemory.remember` of `length` moves out of a ring that begins at `start`."""
     if agent.remembered[0] == len(agent.lengths):
@@ -170,10 +147,11 @@ def remember(agent: AgentArrays, rules: Rules, moves: NDArray[np.uint8], start: 
         agent.paths[i, k] = moves[(start + k) % len(moves)]
     agent.lengths[i], agent.n_replicated[i], agent.n_counted[i] = length, 0, 0
     agent.remembered[0] += 1
+    agent.tally[COPIED] += 1
     _weigh(agent, 0, rules.approach)
 
 
-@_called
+@called
 def _forget(agent: AgentArrays) -> None:
     lowest = 0
     for i in range(1, agent.remembered[0]):
@@ -189,7 +167,7 @@ def _forget(agent: AgentArrays) -> None:
     agent.remembered[0] -= 1
 
 
-@_inlined
+@inlined
 def _choose(agent: AgentArrays, other: AgentArrays, rules: Rules) -> Word:
     """`Controller.choose`."""
     last = False
@@ -203,34 +181,39 @@ def _choose(agent: AgentArrays, other: AgentArrays, rules: Rules) -> Word:
         last = agent.replay_index[0] == agent.lengths[agent.replay[0]] - 1
     state = agent.state[0]
     if rules.accesses:
-        action = _greedy(_U(other.greedy[state]), agent.stream)
+        suggested = _U(other.greedy[state])
+        action = _greedy(suggested, agent.stream)
+        agent.tally[SUGGESTED] += 1
+        agent.tally[SUGGESTED_AT_RANDOM] += suggested == ALL_MOVES
     else:
         action = _U(agent.paths[agent.replay[0], agent.replay_index[0]])
-    if not last and not (_U(agent.greedy[state]) >> action) & _ONE:
+    if (rules.checks_last or not last) and not (_U(agent.greedy[state]) >> action) & _ONE:
         _end(agent, rules, False)
         return _epsilon_greedy(agent, rules)
     return action
 
 
-@_inlined
+@inlined
 def _end(agent: AgentArrays, rules: Rules, completed: Truth) -> None:
     """`Controller._end`."""
     path = agent.replay[0]
+    agent.tally[TRIED] += agent.n_replicated[path] == 0
     agent.n_replicated[path] += 1
     agent.n_counted[path] += completed if rules.approach == COMPLETION else agent.q_change[0] > 0.0
     _weigh(agent, path, rules.approach)
     agent.replay[0] = NO_REPLAY
 
 
-@_inlined
+@inlined
 def _update(
     agent: AgentArrays, rules: Rules, state: Word, action: Word, reward: Real, next_state: Word
 ) -> Real:
-    """`QTable.update`, and the set of greedy actions with it."""
+    """`QTable.update`, and the set of greedy actions with it; return `Controller._counted`."""
     at = state * _MOVES + action
-    change = rules.alpha * (reward + rules.gamma * agent.best[next_state] - agent.q[at])
-    value = agent.q[at] + change
-    agent.q[at] = value
+    old = agent.q[at]
+    change = rules.alpha * (reward + rules.gamma * agent.best[next_state] - old)
+    agent.q[at] = old + change
+    value = agent.q[at]
     best, actions, this = agent.best[state], _U(agent.greedy[state]), _ONE << action
     joined = actions | this if value == best else actions & ~this
     actions = this if value > best else joined
@@ -238,10 +221,20 @@ def _update(
     if actions == 0:
         best, actions = _scan(agent.q, state)
     agent.best[state], agent.greedy[state] = best, actions
-    return change
+    return change if rules.increase == ASKED else _moved(agent, rules, value - old)
 
 
-@_called
+@inlined
+def _moved(agent: AgentArrays, rules: Rules, stored: Real) -> Real:
+    """How far a value has moved, or the sum of them all."""
+    if rules.increase != AVERAGE:
+        return stored
+    total = agent.q_total[0]
+    agent.q_total[0] = total + stored
+    return agent.q_total[0] - total
+
+
+@called
 def _scan(q: NDArray[np.float64], state: Word) -> tuple[Real, Word]:
     """The best value of a state and the set of actions that have it."""
     best, actions = q[state * _MOVES], _ONE
@@ -254,14 +247,14 @@ def _scan(q: NDArray[np.float64], state: Word) -> tuple[Real, Word]:
     return best, actions
 
 
-@_called
+@called
 def prepare(agent: AgentArrays) -> None:
     """Find the best values and greedy sets of a table that was filled from outside."""
     for state in range(len(agent.best)):
         agent.best[state], agent.greedy[state] = _scan(agent.q, _U(state))
 
 
-@_inlined
+@inlined
 def step(world: ArenaArrays, agent: AgentArrays, other: AgentArrays, rules: Rules) -> Truth:
     """Choose, move and learn once; whether the goal was reached, and the agent put back to the start."""
     imitates = agent.remembered[0] > 0
@@ -282,7 +275,7 @@ def step(world: ArenaArrays, agent: AgentArrays, other: AgentArrays, rules: Rule
     return arrived
 
 
-@_called
+@called
 def _leave_trail(agent: AgentArrays, action: Word, arrived: Truth) -> None:
     ring = len(agent.trail)
     agent.trail[agent.trail_moves[0] % ring] = action
@@ -293,7 +286,7 @@ def _leave_trail(agent: AgentArrays, action: Word, arrived: Truth) -> None:
         agent.shown_moves[0], agent.trail_moves[0] = agent.trail_moves[0], 0
 
 
-@_called
+@called
 def copy_moves(world: ArenaArrays, one: LearnerArrays, two: LearnerArrays) -> None:
     """`one` sees a stretch of its teacher's trajectory and remembers it.
 
@@ -313,7 +306,7 @@ def copy_moves(world: ArenaArrays, one: LearnerArrays, two: LearnerArrays) -> No
     remember(agent, rules, ring, moves - length, length)
 
 
-@_inlined
+@inlined
 def _step_and_copy(world: ArenaArrays, one: LearnerArrays, two: LearnerArrays) -> None:
     arrived = step(world, one.agent, two.agent, one.rules)
     watches = one.rules.watches != WATCHES_NOBODY
@@ -321,7 +314,7 @@ def _step_and_copy(world: ArenaArrays, one: LearnerArrays, two: LearnerArrays) -
         copy_moves(world, one, two)
 
 
-@_called
+@called
 def best_path_length(world: ArenaArrays, agent: AgentArrays, found: BestPathArrays) -> Whole:
     """`greedy_path_length`; not walked again while every set that the last path rests on is the same."""
     length = found.length[0]
@@ -333,26 +326,27 @@ def best_path_length(world: ArenaArrays, agent: AgentArrays, found: BestPathArra
     return _walk(world, agent, found)
 
 
-@_called
+@called
 def _walk(world: ArenaArrays, agent: AgentArrays, found: BestPathArrays) -> Whole:
-    state, ties, length = world.start, False, 0
+    state, ties, luck, length = world.start, False, False, 0
     while state != world.goal and length < len(found.route):
         actions = _U(agent.greedy[state])
         found.route[length], found.sets[length] = state, actions
         ties |= _has_tie(actions)
+        luck |= actions == ALL_MOVES
         state = _neighbour(world, state, _greedy(actions, found.stream))
         length += 1
     found.length[0] = 0 if ties else length
-    return length
+    return len(found.route) if luck and not found.counts_luck else length
 
 
-@_called
+@called
 def _evaluate(world: ArenaArrays, learner: LearnerArrays, point: Whole) -> None:
     if point < len(learner.found.lengths):
         learner.found.lengths[point] = best_path_length(world, learner.agent, learner.found)
 
 
-@_inlined
+@inlined
 def _practise(world: ArenaArrays, agent: AgentArrays, rules: Rules, steps: Whole, reachings: Whole) -> Whole:
     """`step` for an agent alone with an empty memory, many times, its state kept in registers."""
     state, word = agent.state[0], agent.stream[0]
@@ -371,7 +365,7 @@ def _practise(world: ArenaArrays, agent: AgentArrays, rules: Rules, steps: Whole
     return taken
 
 
-@_called
+@called
 def run(world: ArenaArrays, one: LearnerArrays, two: LearnerArrays, limits: Limits) -> Whole:
     """Let `one`, and in turn `two` if it takes part, act until a limit; return the steps taken.
 
@@ -379,12 +373,15 @@ def run(world: ArenaArrays, one: LearnerArrays, two: LearnerArrays, limits: Limi
     """
     agent, rules, points = one.agent, one.rules, len(one.found.lengths)
     watches = rules.watches != WATCHES_NOBODY
-    alone = not limits.pair and not watches and not rules.seen and agent.remembered[0] == 0
+    alone = not watches and not rules.seen and agent.remembered[0] == 0
     point, due = 0, limits.every
     taken: Whole = 0
     while taken < limits.steps and agent.arrivals[0] < limits.reachings:
         if alone:
-            taken += _practise(world, agent, rules, min(due, limits.steps) - taken, limits.reachings)
+            made = _practise(world, agent, rules, min(due, limits.steps) - taken, limits.reachings)
+            if limits.pair:
+                _practise(world, two.agent, two.rules, made, UNLIMITED)
+            taken += made
         else:
             _step_and_copy(world, one, two)
             if limits.pair:
@@ -394,5 +391,6 @@ def run(world: ArenaArrays, one: LearnerArrays, two: LearnerArrays, limits: Limi
             _evaluate(world, one, point)
             _evaluate(world, two, point)
             point += 1
-            due = due + limits.every if point < points else limits.steps + 1
+            every = limits.every if point < limits.points else limits.later_every
+            due = due + every if point < points else limits.steps + 1
     return taken

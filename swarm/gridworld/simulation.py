@@ -20,15 +20,22 @@ from swarm.gridworld.condition import (
     CopyExpert,
     GivenPaths,
     NoTeacher,
+    Precision,
     Teacher,
 )
 from swarm.gridworld.splitmix import stream_word
-from swarm.gridworld.state import AgentArrays, ArenaArrays, BestPathArrays, LearnerArrays, Limits, Rules
+from swarm.gridworld.state import (
+    UNLIMITED,
+    AgentArrays,
+    ArenaArrays,
+    BestPathArrays,
+    LearnerArrays,
+    Limits,
+    Rules,
+)
+from swarm.learning.controller import QIncrease
 from swarm.learning.memory import Approach
 from swarm.learning.q_table import ALPHA, GAMMA
-
-UNLIMITED = 2**62
-"""More steps than any machine makes, and twice as many still fit a signed word."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +48,12 @@ class Trace:
     """R_i of each path in the memory at the end, NaN where there is none (learners, memory paths)."""
     steps: int
     """Time steps that the run took."""
+    replicated: NDArray[np.int64]
+    """How often each path in the memory at the end was replayed (learners, memory paths)."""
+    tally: NDArray[np.int64]
+    """`state.COPIED`, `TRIED`, `SUGGESTED`, `SUGGESTED_AT_RANDOM` (learners, 4)."""
+    q_error: NDArray[np.float64]
+    """The greatest distance of a Q value from that of one who has learnt all there is (learners,)."""
 
 
 def simulate(condition: Condition, seed: int, run: int) -> Trace:
@@ -66,9 +79,6 @@ class Simulation:
                     _remember(self.one, np.array(path.moves, np.uint8))
             case CopyExperienced(goal_reachings=goal_reachings):
                 self._train_teacher(goal_reachings)
-                kernels.copy_moves(self.world, self.one, self.two)
-            case CopyExpert():
-                kernels.copy_moves(self.world, self.one, self.two)
             case AccessExpert(moves):
                 self.two.agent.q[:] = expert_values(condition.arena, GAMMA).ravel()
                 kernels.prepare(self.two.agent)
@@ -76,12 +86,14 @@ class Simulation:
             case AccessEachOther(moves):
                 _remember(self.one, _any_moves(moves))
                 _remember(self.two, _any_moves(moves))
+        if getattr(condition.teacher, "copies_at_once", False):
+            kernels.copy_moves(self.world, self.one, self.two)
 
     def _train_teacher(self, goal_reachings: int) -> None:
         """Alone, and faster while nobody will see its moves: only those of its last run may be copied."""
         unseen = self.two._replace(rules=self.two.rules._replace(seen=False))
         for teacher, reachings in ((unseen, goal_reachings - 1), (self.two, goal_reachings)):
-            alone = Limits(UNLIMITED, reachings, UNLIMITED, pair=False)
+            alone = Limits(UNLIMITED, reachings, UNLIMITED, False, UNLIMITED, UNLIMITED)
             kernels.run(self.world, teacher, self.one, alone)
 
     def advance(self, steps: int | None = None) -> int:
@@ -91,20 +103,29 @@ class Simulation:
             steps or condition.steps or UNLIMITED,
             condition.goal_reachings or UNLIMITED,
             condition.evaluate_every,
-            pair=isinstance(condition.teacher, CopyEachOther | AccessEachOther | CopyExperienced),
+            pair=condition.learners == 2 or isinstance(condition.teacher, CopyExperienced),
+            points=condition.point_limit,
+            later_every=condition.later_every or UNLIMITED,
         )
         return int(kernels.run(self.world, self.one, self.two, limits))
 
     def trace(self, steps: int) -> Trace:
         """What the run shows after `steps` steps."""
         shown = [self.one, self.two][: self.condition.learners]
-        points = min(steps // self.condition.evaluate_every, self.condition.point_limit)
+        points = len(self.condition.evaluated_steps(steps))
         lengths = np.array([learner.found.lengths[:points] for learner in shown], np.int32)
         counts = [int(learner.agent.remembered[0]) for learner in shown]
         ratios = np.full((len(shown), max(counts)), np.nan)
-        for row, learner, count in zip(ratios, shown, counts, strict=True):
-            row[:count] = learner.agent.ratios[:count]
-        return Trace(lengths, ratios, steps)
+        replicated = np.zeros((len(shown), max(counts)), np.int64)
+        for place, (learner, count) in enumerate(zip(shown, counts, strict=True)):
+            ratios[place, :count] = learner.agent.ratios[:count]
+            replicated[place, :count] = learner.agent.n_replicated[:count]
+        tally = np.array([learner.agent.tally for learner in shown])
+        return Trace(lengths, ratios, steps, replicated, tally, self._q_errors(shown))
+
+    def _q_errors(self, shown: list[LearnerArrays]) -> NDArray[np.float64]:
+        learnt = expert_values(self.condition.arena, GAMMA).ravel()
+        return np.array([np.abs(learner.agent.q - learnt).max() for learner in shown])
 
 
 def _remember(learner: LearnerArrays, moves: NDArray[np.uint8]) -> None:
@@ -123,6 +144,13 @@ APPROACHES = {
 }
 
 
+INCREASES = {
+    QIncrease.ASKED: state.ASKED,
+    QIncrease.STORED: state.STORED,
+    QIncrease.AVERAGE: state.AVERAGE,
+}
+
+
 def world(arena: Arena) -> ArenaArrays:
     """An arena as the kernels see it."""
     ends = np.uint64(arena.grid.start), np.uint64(arena.grid.goal)
@@ -131,7 +159,8 @@ def world(arena: Arena) -> ArenaArrays:
 
 def learners(condition: Condition, seed: int, run: int) -> tuple[LearnerArrays, LearnerArrays]:
     """The first learner, and its teacher or the other learner: both have learnt nothing yet."""
-    points = (condition.point_limit, condition.point_limit if condition.learners == 2 else 0)
+    room = condition.point_limit + condition.later_points
+    points = (room, room if condition.learners == 2 else 0)
     one, two = (
         LearnerArrays(
             _agent(condition, seed, run, name), settings, _best_path(condition, limit, seed, run, name)
@@ -155,6 +184,8 @@ def _rules(condition: Condition) -> tuple[Rules, Rules]:
         moves=_moves(teacher),
         accesses=isinstance(teacher, AccessExpert | AccessEachOther),
         seen=False,
+        increase=INCREASES[condition.increase],
+        checks_last=condition.checks_last,
     )
     match teacher:
         case CopyExpert():
@@ -180,9 +211,10 @@ def _moves(teacher: Teacher) -> int:
 def _agent(condition: Condition, seed: int, run: int, name: str) -> AgentArrays:
     states, capacity = condition.arena.grid.states, condition.capacity
     moves = _moves(condition.teacher)
+    real = np.float32 if condition.precision is Precision.SINGLE else np.float64
     return AgentArrays(
-        q=np.zeros(states * MOVES),
-        best=np.zeros(states),
+        q=np.zeros(states * MOVES, real),
+        best=np.zeros(states, real),
         greedy=np.full(states, (1 << MOVES) - 1, np.uint8),
         state=np.full(1, condition.arena.grid.start, np.uint64),
         arrivals=np.zeros(1, np.int64),
@@ -198,6 +230,8 @@ def _agent(condition: Condition, seed: int, run: int, name: str) -> AgentArrays:
         replay=np.full(1, state.NO_REPLAY, np.int64),
         replay_index=np.zeros(1, np.int64),
         q_change=np.zeros(1),
+        q_total=np.zeros(1),
+        tally=np.zeros(4, np.int64),
         trail=np.zeros(moves, np.uint8),
         trail_moves=np.zeros(1, np.int64),
         shown=np.zeros(moves, np.uint8),
@@ -213,4 +247,5 @@ def _best_path(condition: Condition, points: int, seed: int, run: int, name: str
         length=np.zeros(1, np.int64),
         stream=np.array([stream_word(seed, run, name, "best path")], np.uint64),
         lengths=np.zeros(points, np.int16),
+        counts_luck=condition.counts_luck,
     )

@@ -7,10 +7,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+UNLIMITED = 2**62
+"""More steps than any machine makes, and twice as many still fit a signed word."""
 NO_REPLAY = -1
 """No path has this number."""
 FIXED, COMPLETION, AVERAGE_Q = 0, 1, 2
 """`Approach` as the kernels know it."""
+ASKED, STORED, AVERAGE = 0, 1, 2
+"""`QIncrease` as the kernels know it."""
+COPIED, TRIED, SUGGESTED, SUGGESTED_AT_RANDOM = 0, 1, 2, 3
+"""Places in an agent's tally: paths remembered, paths replayed at least once, actions suggested by another's
+table, and those of them for which that table knew nothing."""
 WATCHES_NOBODY, WATCHES_EXPERT, WATCHES_OTHER = 0, 1, 2
 """Whom a learner copies, as the kernels know it."""
 
@@ -44,6 +51,10 @@ class Rules(NamedTuple):
     """Whether a path is the other agent's policy, of `moves` moves"""
     seen: bool
     """Whether another watches, so that the agent's moves have to be kept"""
+    increase: int
+    """Which change of Q counts towards n_Q+"""
+    checks_last: bool
+    """Whether the last action of a path undergoes the Q check"""
 
 
 class Limits(NamedTuple):
@@ -53,6 +64,9 @@ class Limits(NamedTuple):
     reachings: int
     every: int
     pair: bool
+    points: int
+    """After so many evaluations, they come every `later_every` steps"""
+    later_every: int
 
 
 class AgentArrays(NamedTuple):
@@ -87,7 +101,11 @@ class AgentArrays(NamedTuple):
     """The memory's place of the path being replayed, or NO_REPLAY"""
     replay_index: NDArray[np.int64]
     q_change: NDArray[np.float64]
-    """The sum of the replay's changes of Q values"""
+    """The sum of the replay's changes of Q values that count"""
+    q_total: NDArray[np.float64]
+    """The sum of all Q values, kept where their average counts"""
+    tally: NDArray[np.int64]
+    """What has happened how often (4,)"""
     trail: NDArray[np.uint8]
     """The last moves of this run, in a ring (moves,)"""
     trail_moves: NDArray[np.int64]
@@ -107,6 +125,8 @@ class BestPathArrays(NamedTuple):
     stream: NDArray[np.uint64]
     lengths: NDArray[np.int16]
     """What was found so far (points,)"""
+    counts_luck: bool
+    """Whether a path through cells in which nothing has been learnt may arrive"""
 
 
 class LearnerArrays(NamedTuple):

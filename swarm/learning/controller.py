@@ -17,6 +17,17 @@ from swarm.learning.random import Rng, RngState, restore_rng, rng_state
 from swarm.learning.snapshot import count, finite
 
 
+class QIncrease(Enum):
+    """What has to be positive for a replay to count into n_Q+ ("the average Q value increased")."""
+
+    ASKED = "asked"
+    """The sum of the changes that the learning rule asks for, however small."""
+    STORED = "stored"
+    """The sum of the changes of the stored values: one too small for a value to move is none."""
+    AVERAGE = "average"
+    """The change of the table's average: one too small for the sum of all values to move is none."""
+
+
 class Outcome(Enum):
     """How the replay of a path ended."""
 
@@ -67,13 +78,27 @@ class ControllerSnapshot(TypedDict):
 
 
 class Controller:
-    """Chooses actions and learns from them; ask `choose`, act, then tell `learn`."""
+    """Chooses actions and learns from them; ask `choose`, act, then tell `learn`.
 
-    def __init__(self, q: QTable, memory: ImitationMemory, epsilon: float, rng: Rng) -> None:
+    `increase` is what counts towards n_Q+; `checks_last` subjects a path's last action to the Q check too.
+    """
+
+    def __init__(
+        self,
+        q: QTable,
+        memory: ImitationMemory,
+        epsilon: float,
+        rng: Rng,
+        *,
+        increase: QIncrease = QIncrease.ASKED,
+        checks_last: bool = False,
+    ) -> None:
         self.q = q
         self.memory = memory
         self.epsilon = epsilon
         self.rng = rng
+        self.increase = increase
+        self.checks_last = checks_last
         self.replay: Replay | None = None
         self.ended: EndedReplay | None = None
         """The replay that the last call of `choose` or `learn` ended, if it ended one."""
@@ -81,7 +106,8 @@ class Controller:
     def choose(self, state: int) -> int:
         """The next action: of the path being replayed, of a path now started, or epsilon-greedy.
 
-        As the listings print it, a path's last action is executed without the Q check.
+        As the listings print it, a path's last action is executed without the Q check; the text has "the
+        same check at each step", which `checks_last` does.
         """
         self.ended = None
         if self.replay is None:
@@ -93,7 +119,7 @@ class Controller:
         if self.replay is None:
             return self._epsilon_greedy(state)
         action = self.replay.remembered.path.action(self.replay.index, state, self.rng)
-        if not last and self.q.has_better(state, action):
+        if (self.checks_last or not last) and self.q.has_better(state, action):
             self._end(Outcome.REJECTED, executed=self.replay.index)
             return self._epsilon_greedy(state)
         return action
@@ -117,13 +143,25 @@ class Controller:
         figure 14 are lower by 0.01.
         """
         self.ended = None
+        value, total = self.q.values[state][action], self.q.total
         change = self.q.update(state, action, reward, next_state, discount)
         if self.replay is not None:
-            self.replay.q_change += change
+            stored, average = self.q.values[state][action] - value, self.q.total - total
+            self.replay.q_change += self._counted(change, stored, average)
             outcome = self._outcome(self.replay, blocked=blocked, arrived=arrived)
             if outcome is not None:
                 self._end(outcome, executed=self.replay.index + 1)
         return change
+
+    def _counted(self, asked: float, stored: float, average: float) -> float:
+        """Which of an update's changes counts."""
+        match self.increase:
+            case QIncrease.ASKED:
+                return asked
+            case QIncrease.STORED:
+                return stored
+            case QIncrease.AVERAGE:
+                return average
 
     def _started(self) -> Replay | None:
         if not self.memory.remembered:
@@ -146,7 +184,7 @@ class Controller:
         return Outcome.BLOCKED if blocked else None
 
     def _end(self, outcome: Outcome, executed: int) -> None:
-        """Count the replay into R_i; n_Q+ counts those whose Q updates sum to more than 0."""
+        """Count the replay into R_i; n_Q+ counts those whose changes of Q sum to more than 0."""
         assert self.replay is not None
         remembered, q_change = self.replay.remembered, self.replay.q_change
         remembered.n_replicated += 1

@@ -18,6 +18,8 @@ class QTable:
 
     def __init__(self, states: int) -> None:
         self.values = [[0.0] * MOVES for _ in range(states)]
+        self.total = 0.0
+        """The sum of all values, kept up to date: the number of values times their average."""
 
     def best_value(self, state: int) -> float:
         """max_a Q(s, a): what the paper prints as argmax in eq. 1 and 7."""
@@ -44,16 +46,17 @@ class QTable:
     def update(self, state: int, action: int, reward: float, next_state: int, discount: float) -> float:
         """Learn from one transition; return the change of Q(s, a) that the rule asks for.
 
-        It may be too small for the stored value to move. Such changes count towards n_Q+ all the same,
-        and late in a run they are most of what counts: with the stored values' differences instead, the
-        R values of figure 14 keep their order but end at 0.08 for SE, not at 0.7.
+        It may be too small for the stored value to move; whether such changes count towards n_Q+ is
+        `swarm.learning.controller.QIncrease`.
 
         Eq. 1 with `discount` gamma and `reward` r(t+1); eq. 7 with `discount` and `reward` from
         `discount_over`. The algorithms' listings drop gamma; eq. 1 is what is meant.
         """
         target = reward + discount * self.best_value(next_state)
         change = ALPHA * (target - self.values[state][action])
-        self.values[state][action] += change
+        value = self.values[state][action]
+        self.values[state][action] = value + change
+        self.total += self.values[state][action] - value
         return change
 
     def snapshot(self) -> list[list[float]]:
@@ -67,6 +70,7 @@ class QTable:
         if any(len(row) != MOVES for row in values):
             raise ValueError(f"a state has not {MOVES} actions")
         self.values = [[finite(value) for value in row] for row in values]
+        self.total = sum(map(sum, self.values))
 
 
 def discount_over(duration_s: float, rate_per_s: float = DISCOUNT_RATE_PER_S) -> float:

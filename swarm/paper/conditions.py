@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from swarm.geometry import Move
 from swarm.gridworld.arena import OBSTACLE_100, OPEN_10
 from swarm.gridworld.condition import (
@@ -24,6 +26,8 @@ BETAS = (0.1, 0.3, 0.5)
 SMALL_HORIZON_STEPS = 20_000
 LARGE_HORIZON_STEPS = 20_000_000
 """How far the paper's figures go: 3 and 5 to 9, and 12 to 21."""
+LATER_EVERY_STEPS = 1000
+"""On the 10 x 10 arena, between the figures' 20,000 steps and the 100,000th reaching of the goal."""
 
 BENEFICIAL = ObservedPath((Move.SE,) * 5)
 """Figure 2."""
@@ -44,11 +48,18 @@ def _small(name: str, teacher: Teacher, beta: float, approach: Approach) -> Cond
         goal_reachings=100_000,
         evaluate_every=10,
         points=SMALL_HORIZON_STEPS // 10,
+        later_every=LATER_EVERY_STEPS,
+        later_points=3000,  # twice as many as the longest runs have
     )
 
 
 def _large(name: str, teacher: Teacher) -> Condition:
     return Condition(name, OBSTACLE_100, teacher, epsilon=0.5, beta=0.5, steps=LARGE_HORIZON_STEPS)
+
+
+def shortened(condition: Condition, steps: int) -> Condition:
+    """The condition for so many steps, evaluated all the time."""
+    return replace(condition, steps=steps, points=None, later_every=None, later_points=0)
 
 
 def one_path(approach: Approach, path: ObservedPath, beta: float) -> Condition:
@@ -61,6 +72,8 @@ def one_path(approach: Approach, path: ObservedPath, beta: float) -> Condition:
 SMALL_NO_IMITATION = _small("small_no_imitation", NoTeacher(), 0.5, Approach.AVERAGE_Q)
 
 NO_IMITATION = _large("no_imitation", NoTeacher())
+NO_IMITATION_PAIR = _large("no_imitation_pair", NoTeacher(learners=2))
+"""What pairs that imitate are compared with: the mean of two varies less than one."""
 GIVEN_EIGHT_PATHS = _large("eight_paths", GivenPaths(EIGHT_PATHS))
 COPYING_EXPERT = _large("copying_expert", CopyExpert())
 COPYING_EXPERIENCED = _large("copying_experienced", CopyExperienced())
@@ -103,5 +116,5 @@ def gains(approach: Approach, path: ObservedPath) -> tuple[Better, ...]:
 
 
 def losses(approach: Approach, path: ObservedPath, betas: tuple[float, ...] = BETAS) -> tuple[Better, ...]:
-    """Every one of these betas is worse than no imitation."""
-    return tuple(Better(SMALL_NO_IMITATION, one_path(approach, path, beta)) for beta in betas)
+    """Every one of these betas is worse than no imitation, over all reachings of the goal."""
+    return tuple(Better(SMALL_NO_IMITATION, one_path(approach, path, beta), whole_run=True) for beta in betas)

@@ -10,6 +10,7 @@ from pathlib import Path
 from swarm.config.limits import LARGEST_SEED, MOST_JOBS
 from swarm.errors import UserError
 from swarm.gridworld.condition import Condition
+from swarm.paper.readings import DEFAULT, Readings
 from swarm.paper.store import RunStore
 from swarm.paper.study import Study
 from swarm.parallel import check_scheduler
@@ -25,6 +26,7 @@ class Settings:
     out: Path | None = None
     jobs: int = 1
     scheduler: str = "processes"
+    readings: Readings = DEFAULT
 
     def __post_init__(self) -> None:
         for name, value in (("runs", self.runs), ("steps", self.steps), ("jobs", self.jobs)):
@@ -62,7 +64,9 @@ def check_sizes(store: RunStore, runs_of: Mapping[Condition, int], jobs: int) ->
                 f"--steps {cut.steps} is too short: the best path of {cut.name} is evaluated every "
                 f"{cut.evaluate_every} steps; give at least that many"
             )
-        needed += BYTES_A_VALUE * cut.point_limit * (runs + 2 * jobs) + BYTES_A_RUN * runs
+        needed += (
+            BYTES_A_VALUE * (cut.point_limit + cut.later_points) * (runs + 2 * jobs) + BYTES_A_RUN * runs
+        )
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed > memory:
         raise UserError(

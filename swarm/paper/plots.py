@@ -13,8 +13,7 @@ from swarm.geometry import Grid, Move
 from swarm.paper.results import Results
 from swarm.paper.study import Drawing, Shown, Study
 from swarm.paper.tables import ratio_table
-from swarm.statistics.intervals import FEWEST
-from swarm.statistics.plots import draw_band, draw_error_bars, interval_words
+from swarm.statistics.plots import EACH_IS_DRAWN, draw_band, draw_error_bars, interval_words
 from swarm.statistics.samples import Curves
 
 DRAWN_POINTS = 2000
@@ -61,7 +60,7 @@ def _draw_mean(axes: Axes, curves: Curves, study: Study, label: str, colour: str
 
 
 def _draw_ratios(axes: Axes, study: Study, results: Results) -> None:
-    """A bar for each path, with the 95 % interval of its mean, or a dot for each of too few runs."""
+    """A bar for each path, with the 95 % interval of its mean, and a dot for each of few runs."""
     tables = ratio_table(study, results)
     width = 0.8 / max(1, len(tables))
     for place, (label, table) in enumerate(tables.items()):
@@ -71,7 +70,7 @@ def _draw_ratios(axes: Axes, study: Study, results: Results) -> None:
         at = np.arange(len(table)) + (place - (len(tables) - 1) / 2) * width
         errors = np.nan_to_num([mean - low, high - mean])
         axes.bar(at, mean, width, yerr=errors if errors.any() else None, capsize=3, label=label)
-        if 1 < results.runs < FEWEST:
+        if 1 < results.runs < EACH_IS_DRAWN:
             axes.plot(at, results.ratios(study.series[label]).T, ".", color="black", markersize=4)
         axes.set_xticks(np.arange(len(table)), list(table))
     axes.set_xlabel("Path")

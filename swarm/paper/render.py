@@ -29,8 +29,9 @@ def render(figure: Figure, store: RunStore, settings: Settings) -> dict[str, Any
 
 
 def results_folder(results: Results) -> Path:
-    """Where the tables and plots of so many runs go: those of fewer runs are not overwritten."""
-    return results.store.root / f"{results.runs}-runs"
+    """Where the tables and plots of so many runs go: those of fewer runs, and of other readings, stay."""
+    readings = "".join(f"@{name}={word}" for name, word in results.store.readings.chosen.items())
+    return results.store.root / f"{results.runs}-runs{readings}"
 
 
 def render_plot(study: Study, results: Results) -> Path:
@@ -111,6 +112,6 @@ def _speed(study: Study, results: Results) -> dict[str, float | None]:
 
 
 def _timings(study: Study, results: Results) -> list[Timing]:
-    names = {condition.name for condition in study.series.values()}
+    names = {results.store.condition(condition).name for condition in study.series.values()}
     timings = results.store.timings().values()
     return [timing for timing in timings if timing.condition in names and timing.run < results.runs]

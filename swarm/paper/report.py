@@ -10,14 +10,15 @@ from pathlib import Path
 
 from swarm.files import write_text
 from swarm.markdown import table
-from swarm.paper.assessment import Assessment
+from swarm.paper.assessment import Assessment, Corrected
 from swarm.paper.report_json import as_json
 from swarm.paper.verdicts.finding import Finding, Tested, Verdict
 from swarm.paper.verdicts.judge import Judged
 from swarm.paper.verdicts.wording import in_windows
 from swarm.statistics.effect_size import EffectSize
 
-COLUMNS = ("compared", "paper's test", "family-wise test", "effect (95 % interval)", "verdict")
+COLUMNS = ("compared", "paper's test", "family-wise test", "effect (95 % interval)", "arrivals", "verdict")
+CLAIM_COLUMNS = ("figure", "the paper's words", "verdict", "p", "Holm", "Benjamini-Hochberg")
 
 LEGEND = (
     "Paper's test: a paired t-test at each of about 200 points, each on its own. Family-wise: max-T sign "
@@ -25,7 +26,11 @@ LEGEND = (
     "supported and, after 'against', where its opposite is; gaps of up to 5 points are overlooked, and "
     "stretches of fewer than 3 points left out. Effect: the mean paired difference over the claimed time, in "
     "moves of the best path unless said otherwise, and Cohen's d_z. A best path that does not arrive counts "
-    "as ten times the arena's side. Two learners that copy each other are one replicate: their average."
+    "as ten times the arena's side, which is most of an early difference: arrivals are the medians of the "
+    "first time at which it arrives at all, and at which it is shortest. Pairs of learners are compared with "
+    "pairs, by their average; with a single learner, by the first of each pair. Times in brackets are 95 % "
+    "intervals of a bootstrap of the pairs. A claim's p is the largest of its comparisons; Holm's keeps 5 % "
+    "over all claims, Benjamini and Hochberg's 5 % of those found."
 )
 
 
@@ -36,6 +41,7 @@ def row(finding: Finding) -> tuple[str, ...]:
         tested(finding.paper_test),
         tested(finding.family_wise_test),
         effect(finding.effect, finding.effect_unit),
+        finding.arrivals or "none",
         f"{finding.verdict.value}: {finding.why}",
     )
 
@@ -78,18 +84,26 @@ def summary(assessment: Assessment) -> str:
 def as_markdown(assessment: Assessment, command: str) -> str:
     """The verdict table, then every comparison; `command` is what made it."""
     verdicts = [
-        (judged.figure, judged.claim.text, f"**{judged.verdict.value}**") for judged in assessment.judged
+        (one.figure, one.claim.text, f"**{one.verdict.value}**", *corrected_cells(corrected))
+        for one, corrected in zip(assessment.judged, assessment.corrected, strict=True)
     ]
     blocks = [
         "# The paper's claims about its simulations, and what was measured",
         f"Made by `{command}`: {assessment.runs} runs of each condition, seed {assessment.seed}. "
         f"{summary(assessment)}.",
-        table(("figure", "the paper's words", "verdict"), verdicts),
+        table(CLAIM_COLUMNS, verdicts),
         "## Every comparison",
         LEGEND,
         *(_details(judged) for judged in assessment.judged),
     ]
     return "\n\n".join(blocks) + "\n"
+
+
+def corrected_cells(corrected: Corrected | None) -> tuple[str, str, str]:
+    """p, Holm and Benjamini-Hochberg."""
+    if corrected is None:
+        return "none", "none", "none"
+    return p_value(corrected.p), p_value(corrected.holm), p_value(corrected.benjamini_hochberg)
 
 
 def _details(judged: Judged) -> str:
@@ -124,7 +138,7 @@ def as_html(assessment: Assessment, command: str) -> str:
         [
             f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>',
             f"<style>{STYLE}</style></head><body><h1>{title}</h1><p>{made}</p>",
-            _verdict_table(assessment.judged),
+            _verdict_table(assessment),
             f"<p>{escape(LEGEND)}</p>",
             *(_figure(figure, assessment) for figure in figures),
             "</body></html>\n",
@@ -145,16 +159,17 @@ def _claim(judged: Judged) -> str:
     return words + verdict + _html_table(COLUMNS, (map(escape, row(finding)) for finding in judged.findings))
 
 
-def _verdict_table(judged: Iterable[Judged]) -> str:
+def _verdict_table(assessment: Assessment) -> str:
     rows = (
         (
             f'<a href="#{one.figure}">{one.figure}</a>',
             escape(one.claim.text),
             f'<span style="background:{COLOURS[one.verdict]}">{one.verdict.value}</span>',
+            *map(escape, corrected_cells(corrected)),
         )
-        for one in judged
+        for one, corrected in zip(assessment.judged, assessment.corrected, strict=True)
     )
-    return _html_table(("figure", "the paper's words", "verdict"), rows)
+    return _html_table(CLAIM_COLUMNS, rows)
 
 
 def _html_table(columns: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
@@ -168,10 +183,14 @@ def _image(name: str, path: Path) -> str:
     return f'<img alt="{name}" src="data:image/png;base64,{encoded}">'
 
 
-def write_report(assessment: Assessment, command: str) -> dict[str, Path]:
-    """Write claims.md, claims.json and claims.html beside the plots; return them by form."""
+def write_report(assessment: Assessment, command: str, more: str = "") -> dict[str, Path]:
+    """Write claims.md, claims.json and claims.html beside the plots; return them by form.
+
+    `more` is what the page of Markdown ends with.
+    """
+    page = "\n".join(part for part in (as_markdown(assessment, command), more) if part)
     texts = {
-        "markdown": ("claims.md", as_markdown(assessment, command)),
+        "markdown": ("claims.md", page),
         "json": ("claims.json", json.dumps(as_json(assessment), indent=1, allow_nan=False) + "\n"),
         "html": ("claims.html", as_html(assessment, command)),
     }

@@ -17,7 +17,10 @@ def as_json(assessment: Assessment) -> dict[str, Any]:
         "runs": assessment.runs,
         "seed": assessment.seed,
         "steps": assessment.steps,
-        "claims": [_claim(judged) for judged in assessment.judged],
+        "claims": [
+            _claim(judged) | {"p": corrected and vars(corrected)}
+            for judged, corrected in zip(assessment.judged, assessment.corrected, strict=True)
+        ],
         "plots": {name: str(path) for name, path in assessment.plots.items()},
     }
 
@@ -37,7 +40,9 @@ def _finding(finding: Finding) -> dict[str, Any]:
         "verdict": finding.verdict.value,
         "why": finding.why,
         "paper_test": _tested(finding.paper_test),
-        "honest_test": _tested(finding.family_wise_test),
+        "family_wise_test": _tested(finding.family_wise_test),
+        "p": finding.p,
+        "arrivals": finding.arrivals,
         "effect": _effect(finding.effect, finding.effect_unit),
     }
 

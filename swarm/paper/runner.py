@@ -91,16 +91,17 @@ def run_all(wanted: Iterable[tuple[Condition, int]], settings: Settings) -> RunS
     Workers come first: a directory is made only if somebody is there to fill it.
     """
     runs_of = runs_of_each(wanted)
-    place = settings.root, settings.seed, settings.steps
-    store = RunStore(*place)
+    place, readings = (settings.root, settings.seed, settings.steps), settings.readings
+    store = RunStore(*place, readings)
     check_sizes(store, runs_of, settings.jobs)
     tasks = missing_tasks(store, runs_of)
     if not tasks:
-        return open_store(*place, runs_of)
-    costs = expected_costs(store.condition(condition) for condition, _ in tasks)
-    with workers(settings.scheduler, min(settings.jobs, _useful_jobs(tasks, costs))) as started:
-        store = open_store(*place, runs_of)
-        time_left = TimeLeft(costs, count_by_condition(tasks), started.count)
+        return open_store(*place, runs_of, readings)
+    as_run = [(store.condition(condition), run) for condition, run in tasks]
+    costs = expected_costs(condition for condition, _ in as_run)
+    with workers(settings.scheduler, min(settings.jobs, _useful_jobs(as_run, costs))) as started:
+        store = open_store(*place, runs_of, readings)
+        time_left = TimeLeft(costs, count_by_condition(as_run), started.count)
         with progress_bar(len(tasks), time_left) as finished:
             run_tasks(store, tasks, started, finished)
     return store

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from swarm.geometry import Grid, Move
 from swarm.gridworld.arena import OBSTACLE_100
-from swarm.paper.claim import Better, Claim, HigherRatio, ShortestPathMoves
+from swarm.paper.claim import Better, ChosenMore, Claim, HigherRatio, ShortestPathMoves
 from swarm.paper.conditions import EIGHT_PATHS, GIVEN_EIGHT_PATHS, NO_IMITATION, large_study
 from swarm.paper.study import Drawing, Shown, Study
 
@@ -45,7 +45,7 @@ def _claims_of_12() -> tuple[Claim, ...]:
             "The imitation-enhanced learning agent was able to choose the beneficial paths and improve "
             "its performance. A pair-wise t-test reveals that the difference between the two is "
             "statistically significant until around time step 15.5m.",
-            (Better(GIVEN_EIGHT_PATHS, NO_IMITATION, end_step=15_500_000, around_steps=2_000_000),),
+            (Better(GIVEN_EIGHT_PATHS, NO_IMITATION, end_step=15_500_000),),
         ),
     )
 
@@ -86,5 +86,10 @@ def _claims_of_14() -> tuple[Claim, ...]:
         Claim(
             "The paths E and S have relatively higher R_i values compared to the other 5 paths.",
             tuple(HigherRatio(GIVEN_EIGHT_PATHS, move, USELESS) for move in (Move.E, Move.S)),
+        ),
+        Claim(
+            "This confirms that the agent was able to select the 3 paths that are more likely to improve its "
+            "performance.",
+            tuple(ChosenMore(GIVEN_EIGHT_PATHS, move, USELESS) for move in (Move.SE, Move.E, Move.S)),
         ),
     )

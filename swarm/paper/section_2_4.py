@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from swarm.paper.claim import Better, Claim, FindsShortestBy, FindsShortestSooner, NoDifference
+from swarm.gridworld.arena import OBSTACLE_100
+from swarm.paper.claim import Better, Claim, FindsShortestBy, FindsShortestSooner, NoDifference, visible
 from swarm.paper.conditions import (
     ACCESSING_EACH_OTHER,
     ACCESSING_EXPERT,
     COPYING_EACH_OTHER,
     NO_IMITATION,
+    NO_IMITATION_PAIR,
     large_study,
 )
 from swarm.paper.study import Study
@@ -42,7 +44,7 @@ def _claims_of_19() -> tuple[Claim, ...]:
 def figure_20() -> Study:
     """Two agents with access to each other's Q values."""
     series = {
-        "no imitation, no access": NO_IMITATION,
+        "no imitation, no access, two learners": NO_IMITATION_PAIR,
         "accessing each other": ACCESSING_EACH_OTHER,
     }
     return large_study(
@@ -58,7 +60,7 @@ def _claims_of_20() -> tuple[Claim, ...]:
         Claim(
             "It almost has the same performance as the ε-greedy Q-learning algorithm as a pair-wise "
             "t-test reveals that there is no statistical difference between two.",
-            (NoDifference(ACCESSING_EACH_OTHER, NO_IMITATION),),
+            (NoDifference(ACCESSING_EACH_OTHER, NO_IMITATION_PAIR, margin_moves=visible(OBSTACLE_100)),),
         ),
     )
 
@@ -89,7 +91,6 @@ def _claims_of_21() -> tuple[Claim, ...]:
                     ACCESSING_EACH_OTHER,
                     start_step=4_000_000,
                     end_step=9_500_000,
-                    around_steps=1_000_000,
                 ),
             ),
         ),

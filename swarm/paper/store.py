@@ -7,7 +7,7 @@ import hashlib
 import json
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 from swarm.errors import RunFailedError, UserError
 from swarm.files import write_json, write_whole
 from swarm.gridworld.condition import Condition
+from swarm.paper.conditions import shortened
+from swarm.paper.readings import DEFAULT, Readings
 from swarm.table_files import as_parquet
 
 if TYPE_CHECKING:
@@ -40,14 +42,16 @@ class Timing:
 class RunStore:
     """The runs of one directory; make one with `open_store`."""
 
-    def __init__(self, root: Path, seed: int, steps: int | None) -> None:
+    def __init__(self, root: Path, seed: int, steps: int | None, readings: Readings = DEFAULT) -> None:
         self.root = root
         self.seed = seed
         self.steps = steps
+        self.readings = readings
 
     def condition(self, condition: Condition) -> Condition:
-        """The condition as it is run here: cut to this directory's number of steps, if it has one."""
-        return condition if self.steps is None else replace(condition, steps=self.steps, points=None)
+        """The condition as it is run here: as it is read, and cut to this directory's number of steps."""
+        read = self.readings.of(condition)
+        return read if self.steps is None else shortened(read, self.steps)
 
     def admit(self, condition: Condition) -> None:
         """Make room for a condition; UserError if another one of the same name has been run here."""
@@ -74,6 +78,9 @@ class RunStore:
                 "evaluate_every": [condition.evaluate_every] * learners,
                 "best_path_length": pl.Series(list(trace.best_path_length), dtype=pl.List(pl.Int32)),
                 "ratios": pl.Series(list(trace.ratios), dtype=pl.List(pl.Float64)),
+                "replicated": pl.Series(list(trace.replicated), dtype=pl.List(pl.Int64)),
+                "tally": pl.Series(list(trace.tally), dtype=pl.List(pl.Int64)),
+                "q_error": list(trace.q_error),
             }
         )
         write_whole(self._path(condition, run), as_parquet(frame, compression="zstd"))
@@ -96,19 +103,25 @@ class RunStore:
         return {(timing.condition, timing.run): timing for timing in found if timing is not None}
 
     def _folder(self, condition: Condition) -> Path:
-        return self.root / "runs" / condition.name
+        return self.root / "runs" / self.readings.of(condition).name
 
     def _path(self, condition: Condition, run: int) -> Path:
         return self._folder(condition) / f"{run:05}.parquet"
 
 
-def open_store(root: Path, seed: int, steps: int | None, conditions: Iterable[Condition] = ()) -> RunStore:
+def open_store(
+    root: Path,
+    seed: int,
+    steps: int | None,
+    conditions: Iterable[Condition] = (),
+    readings: Readings = DEFAULT,
+) -> RunStore:
     """A new directory with room for these conditions, or one that was made with the same settings; any
     other is refused.
     """
     settings = {"made_by": "swarm reproduce", "seed": seed, "steps": steps, "engine": _engine_digest()}
     _settle(root, settings, "choose another --out")
-    store = RunStore(root, seed, steps)
+    store = RunStore(root, seed, steps, readings)
     for condition in conditions:
         store.admit(condition)
     return store

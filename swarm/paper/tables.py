@@ -10,16 +10,8 @@ from swarm.gridworld.condition import Condition, GivenPaths
 from swarm.learning.random import spawned_generator
 from swarm.paper.results import Results
 from swarm.paper.study import Study
-from swarm.statistics.intervals import (
-    FEWEST,
-    Band,
-    average,
-    bootstrap_bands,
-    interval,
-    pointwise_t_band,
-    simultaneous_band,
-    weighted_iqm,
-)
+from swarm.statistics.averages import average, weighted_iqm
+from swarm.statistics.intervals import FEWEST, Band, ends_of, interval, sample_interval, simultaneous_band
 from swarm.statistics.samples import Curves, FloatArray, Scale
 
 if TYPE_CHECKING:
@@ -27,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def curve_table(study: Study, results: Results) -> pl.DataFrame:
-    """A row for each series and tested point: mean and interquartile mean, each with 95 % bands.
+    """A row for each series and tested point: interquartile mean, mean, and the mean's 95 % bands.
 
     `low` and `high` hold at each point on its own, `simultaneous_low` and `_high` over the whole curve.
     """
@@ -76,22 +68,15 @@ def _bands(curves: Curves, rng: np.random.Generator) -> dict[str, Band]:
     pointwise, values = interval(curves), curves.values
     if pointwise is None:
         unknown = np.full(values.shape[1], np.nan)
-        names = ("", "simultaneous_", "iqm_", "iqm_simultaneous_")
-        return dict.fromkeys(names, Band(unknown, unknown, unknown))
-    iqm, simultaneous_iqm = bootstrap_bands(values, rng, weighted_iqm, curves.scale, resamples=1000)
-    return {
-        "": pointwise,
-        "simultaneous_": simultaneous_band(values, rng, curves.scale),
-        "iqm_": iqm,
-        "iqm_simultaneous_": simultaneous_iqm,
-    }
+        return dict.fromkeys(("", "simultaneous_"), Band(unknown, unknown, unknown))
+    return {"": pointwise, "simultaneous_": simultaneous_band(values, rng, ends_of(curves))}
 
 
 def _ratios(condition: Condition, ratios: FloatArray) -> dict[str, dict[str, float | None]]:
     rows = {}
     for name, column in zip(path_names(condition, ratios.shape[1]), ratios.T, strict=True):
         known = column[np.isfinite(column)]
-        band = pointwise_t_band(known[:, None], SCALE_OF_R) if len(known) >= FEWEST else None
+        band = sample_interval(known[:, None], SCALE_OF_R) if len(known) >= FEWEST else None
         low, high = (None, None) if band is None else (float(band.low[0]), float(band.high[0]))
         rows[name] = {"mean": float(known.mean()), "low": low, "high": high}
     return rows

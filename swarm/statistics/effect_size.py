@@ -31,7 +31,7 @@ def paired_effect_size(first: Sample, second: Sample, level: float = 0.95) -> Ef
     refuse_zero_variance(differences.name, differences.values)
     pairs = len(differences.values)
     mean, spread = float(differences.values.mean()), float(differences.values.std(ddof=1))
-    band = pointwise_t_band(differences.values[:, None], differences.scale, level)
+    band = pointwise_t_band(differences.values[:, None], level=level)
     around_mean = float(band.low[0]), float(band.high[0])
     return EffectSize(mean, around_mean, mean / spread, d_z_interval(mean / spread, pairs, level), pairs)
 

@@ -98,6 +98,7 @@ class PairingError(UserError):
 def paired_differences(first: Measured, second: Measured) -> Measured:
     """`first` minus `second`, replicate by replicate, in the order of `first`.
 
+    They have no scale: a difference as great as the scale is possible, and never met.
     Raises PairingError if the two were not run with the same seeds, have fewer than two replicates,
     or were not measured at the same times.
     """
@@ -106,14 +107,7 @@ def paired_differences(first: Measured, second: Measured) -> Measured:
     if isinstance(first, Curves) and isinstance(second, Curves) and not _same_times(first, second):
         raise PairingError(f"{names} cannot be paired: they were not measured at the same times")
     difference = first.values - second.values[order]
-    scale = _scale_of_differences(first.scale, second.scale)
-    return replace(first, name=f"{first.name} - {second.name}", values=difference, scale=scale)
-
-
-def _scale_of_differences(first: Scale | None, second: Scale | None) -> Scale | None:
-    if first is None or second is None:
-        return None
-    return Scale(first.lowest - second.highest, first.highest - second.lowest)
+    return replace(first, name=f"{first.name} - {second.name}", values=difference, scale=None)
 
 
 def refuse_zero_variance(name: str, differences: FloatArray) -> None:

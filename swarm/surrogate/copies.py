@@ -10,6 +10,7 @@ import csv
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
@@ -34,6 +35,13 @@ class CopyPair:
     kind: str
     true: Moves
     copied: Moves
+
+
+class Copies(Protocol):
+    """What a robot copies of what it is shown."""
+
+    def drawn(self, true: Sequence[Move], rng: np.random.Generator) -> Moves:
+        """The list that is remembered; empty if it copies nothing."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 from swarm.config.experiment import Experiment, RobotSettings, Role
 from swarm.geometry import Move
-from swarm.learning.expert import expert_move
+from swarm.learning.expert import Plan, expert_move
+from swarm.learning.greedy_path import greedy_path
 from swarm.learning.learner import Transition
 from swarm.learning.memory import ImitationMemory
 from swarm.surrogate.durations import (
@@ -94,10 +95,12 @@ class SurrogateRobot(ABC):
 
 
 class SurrogateExpert(SurrogateRobot):
-    """Follows the shortest path for ever."""
+    """Follows its plan, the shortest path unless another is given, for ever."""
+
+    plan: Plan = staticmethod(expert_move)
 
     def choose(self, state: int) -> int:
-        return expert_move(self.grid, state)
+        return self.plan(self.grid, state)
 
     def learn(self, transition: Transition) -> None:
         """An expert has nothing to learn."""
@@ -117,6 +120,9 @@ class SurrogateLearner(SurrogateRobot):
         self.visits = 0
         self.best_paths: list[int] = []
         """The greedy path's length after every ten moves."""
+        self.learnt_paths: list[int] = []
+        """The same, the cap where it passes a cell in which nothing has been learnt."""
+        self._strict_rng = experiment.generator(settings, trial, "learnt path")
 
     @property
     def memory(self) -> ImitationMemory:
@@ -129,10 +135,24 @@ class SurrogateLearner(SurrogateRobot):
         length = self.learner.learn(transition).best_path_length
         if length is not None:
             self.best_paths.append(length)
+            self.learnt_paths.append(self._learnt_length())
+
+    def _learnt_length(self) -> int:
+        cap = self.learner.path_length_cap
+        path = greedy_path(self.learner.controller.q, self.grid, self._strict_rng, cap)
+        return cap if path.by_luck else path.length
 
 
 def surrogate_robot(
-    experiment: Experiment, settings: RobotSettings, durations: Durations, trial: int
+    experiment: Experiment,
+    settings: RobotSettings,
+    durations: Durations,
+    trial: int,
+    plan: Plan = expert_move,
 ) -> SurrogateRobot:
-    made = SurrogateExpert if settings.role is Role.EXPERT else SurrogateLearner
-    return made(experiment, settings, durations, trial)
+    """An expert goes by `plan`."""
+    if settings.role is not Role.EXPERT:
+        return SurrogateLearner(experiment, settings, durations, trial)
+    expert = SurrogateExpert(experiment, settings, durations, trial)
+    expert.plan = plan
+    return expert

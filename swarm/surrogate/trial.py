@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from swarm.config.experiment import Experiment
 from swarm.geometry import Move
+from swarm.learning.expert import Plan, expert_move
 from swarm.learning.memory import ObservedPath, choose_window
-from swarm.surrogate.copies import CopyStore
+from swarm.surrogate.copies import Copies
 from swarm.surrogate.durations import HEADING_AT_THE_START, Durations
 from swarm.surrogate.robots import ShownMoves, SurrogateLearner, SurrogateRobot, surrogate_robot
 
@@ -25,6 +26,19 @@ class CopiedPath:
     true: tuple[Move, ...]
     copied: tuple[Move, ...]
 
+    @property
+    def perfect(self) -> bool:
+        return self.true == self.copied
+
+
+@dataclass(frozen=True)
+class EnactedPath:
+    """A copied path at the end of a trial: how often it was replayed, and its R (eq. 4)."""
+
+    path: CopiedPath
+    enacted: int
+    ratio: float
+
 
 @dataclass(frozen=True)
 class TrialOutcome:
@@ -34,15 +48,26 @@ class TrialOutcome:
     best_paths: dict[str, list[int]]
     """Learner -> best path length after every ten moves."""
     copies: tuple[CopiedPath, ...]
+    learnt_paths: dict[str, list[int]] = field(default_factory=dict)
+    """The same as `best_paths`; one that passes a cell in which nothing has been learnt has not arrived."""
+    memories: dict[str, tuple[EnactedPath, ...]] = field(default_factory=dict)
+    """Learner -> its copied paths, in the order in which they were copied."""
 
 
 class RobotTrial:
     """Steps whichever robot is behind in time, so that all live in one time."""
 
-    def __init__(self, experiment: Experiment, durations: Durations, copies: CopyStore, trial: int) -> None:
+    def __init__(
+        self,
+        experiment: Experiment,
+        durations: Durations,
+        copies: Copies,
+        trial: int,
+        plan: Plan = expert_move,
+    ) -> None:
         self._experiment, self._copies, self._trial = experiment, copies, trial
         self._robots = {
-            each.id: surrogate_robot(experiment, each, durations, trial) for each in experiment.robot
+            each.id: surrogate_robot(experiment, each, durations, trial, plan) for each in experiment.robot
         }
         self._watched_until_s = dict.fromkeys(self._robots, 0.0)
         self._due: dict[str, float] = {}
@@ -55,7 +80,18 @@ class RobotTrial:
         while self._under_way(learners):
             self._step(min(self._active(learners), key=lambda each: each.t_s))
         best_paths = {each.settings.id: each.best_paths for each in learners}
-        return TrialOutcome(self._trial, best_paths, tuple(self._copied))
+        learnt_paths = {each.settings.id: each.learnt_paths for each in learners}
+        memories = {each.settings.id: self._memory(each) for each in learners}
+        return TrialOutcome(self._trial, best_paths, tuple(self._copied), learnt_paths, memories)
+
+    def _memory(self, robot: SurrogateLearner) -> tuple[EnactedPath, ...]:
+        """A robot's memory forgets nothing: its paths are those that it copied, after those it was given."""
+        copied = [path for path in self._copied if path.robot == robot.settings.id]
+        remembered = robot.memory.remembered[len(robot.settings.given_paths()) :]
+        return tuple(
+            EnactedPath(path, each.n_replicated, robot.memory.ratio(each))
+            for path, each in zip(copied, remembered, strict=True)
+        )
 
     def _under_way(self, learners: list[SurrogateLearner]) -> bool:
         return any(each.moves < self._experiment.run.moves for each in learners)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +38,8 @@ class ManyTrials:
     outcomes: tuple[TrialOutcome, ...]
     curves: dict[str, Curves]
     """Condition -> best path length against moves, a row a trial."""
+    learnt: dict[str, Curves]
+    """The same, where a path that passes a cell in which nothing has been learnt has not arrived."""
 
 
 def run_trials(
@@ -47,8 +49,9 @@ def run_trials(
     trials: int,
     jobs: int,
     show: Callable[[], object] = lambda: None,
+    scheduler: str = "processes",
 ) -> ManyTrials:
-    """Trials 0 to `trials` - 1, each with its own seed; the same whatever the number of jobs."""
+    """Trials 0 to `trials` - 1, each with its own seed; the same wherever they run."""
     if experiment.run.moves < MOVES_BETWEEN_EVALUATIONS:
         raise UserError(
             f"{experiment.run.moves} moves give no curve: the best path is noted every "
@@ -56,12 +59,14 @@ def run_trials(
         )
     stored = load_copies(copies), load_durations(durations)
     outcomes: list[TrialOutcome] = []
-    with workers("processes", jobs) as pool:
+    with workers(scheduler, jobs) as pool:
         for outcome in pool.each(one_trial, ((experiment, *stored, trial) for trial in range(trials))):
             outcomes.append(outcome)
             show()
     ordered = tuple(sorted(outcomes, key=lambda outcome: outcome.trial))
-    return ManyTrials(experiment, ordered, condition_curves(experiment, ordered))
+    learnt = [replace(outcome, best_paths=outcome.learnt_paths) for outcome in ordered]
+    curves = (condition_curves(experiment, outcomes) for outcomes in (ordered, learnt))
+    return ManyTrials(experiment, ordered, *curves)
 
 
 def one_trial(experiment: Experiment, copies: CopyStore, durations: Durations, trial: int) -> TrialOutcome:
@@ -87,8 +92,14 @@ def condition_curves(experiment: Experiment, outcomes: Sequence[TrialOutcome]) -
 
 
 def summary(many: ManyTrials) -> dict[str, Any]:
-    """Mean and 95 % interval of each condition at some moves, and from where on its mean stays low."""
-    return {name: _condition_summary(curves) for name, curves in many.curves.items()} | {
+    """Mean and 95 % interval of each condition at some moves, and from where on its mean stays low.
+
+    `mean_learnt` is without the paths that arrive by luck, through cells in which nothing has been learnt.
+    """
+    found = {name: _condition_summary(curves) for name, curves in many.curves.items()}
+    for name, curves in many.learnt.items():
+        found[name]["mean_learnt"] = _condition_summary(curves)["mean_and_interval"]
+    return found | {
         "copies": _copies_summary([copied for outcome in many.outcomes for copied in outcome.copies])
     }
 

@@ -13,7 +13,7 @@ import zenoh
 
 from swarm.access.credentials import zenoh_values
 from swarm.access.keyring import Issued, Keyring
-from swarm.access.zenoh_rules import hub_limits
+from swarm.access.zenoh_limits import hub_limits
 from swarm.config.laboratory import Laboratory
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from swarm.geometry import Move
 from swarm.gridworld.arena import expert_values
 from swarm.gridworld.condition import (
@@ -14,12 +16,29 @@ from swarm.gridworld.condition import (
     CopyExperienced,
     CopyExpert,
     GivenPaths,
+    Precision,
 )
 from swarm.gridworld.splitmix import SplitMix64, stream_word
 from swarm.learning.controller import Controller
 from swarm.learning.greedy_path import greedy_path_length
 from swarm.learning.memory import AccessedPolicy, ImitationMemory, ObservedPath
 from swarm.learning.q_table import GAMMA, QTable
+
+
+class SingleQTable(QTable):
+    """Each stored value is a 32-bit float."""
+
+    def update(self, state: int, action: int, reward: float, next_state: int, discount: float) -> float:
+        value, total = self.values[state][action], self.total
+        change = super().update(state, action, reward, next_state, discount)
+        self.values[state][action] = float(np.float32(self.values[state][action]))
+        self.total = total + (self.values[state][action] - value)
+        return change
+
+
+def _table(condition: Condition) -> QTable:
+    table = SingleQTable if condition.precision is Precision.SINGLE else QTable
+    return table(condition.arena.grid.states)
 
 
 class PlainAgent:
@@ -31,7 +50,14 @@ class PlainAgent:
 
         memory = ImitationMemory(condition.beta, condition.approach, condition.capacity)
         self.grid = condition.arena.grid
-        self.controller = Controller(QTable(self.grid.states), memory, condition.epsilon, stream("choices"))
+        self.controller = Controller(
+            _table(condition),
+            memory,
+            condition.epsilon,
+            stream("choices"),
+            increase=condition.increase,
+            checks_last=condition.checks_last,
+        )
         self.watching, self.evaluating = stream("watching"), stream("best path")
         self.state, self.arrivals = self.grid.start, 0
         self.moves: list[int] = []
@@ -75,9 +101,6 @@ class PlainSimulation:
             case CopyExperienced(goal_reachings=goal_reachings):
                 while self.two.arrivals < goal_reachings:
                     self.two.step()
-                self.one.remember(self._demonstration(self.one, self.two, condition.teacher))
-            case CopyExpert():
-                self.one.remember(self._demonstration(self.one, self.two, condition.teacher))
             case AccessExpert(moves):
                 expert = QTable(condition.arena.grid.states)
                 expert.values = expert_values(condition.arena, GAMMA).tolist()
@@ -85,11 +108,13 @@ class PlainSimulation:
             case AccessEachOther(moves):
                 self.one.controller.memory.remember(AccessedPolicy(self.two.controller.q, moves))
                 self.two.controller.memory.remember(AccessedPolicy(self.one.controller.q, moves))
+        if isinstance(condition.teacher, CopyExpert | CopyExperienced) and condition.teacher.copies_at_once:
+            self.one.remember(self._demonstration(self.one, self.two, condition.teacher))
 
     def step(self) -> None:
         teacher = self.condition.teacher
         self._step(self.one, self.two, isinstance(teacher, CopyExpert | CopyExperienced | CopyEachOther))
-        if isinstance(teacher, CopyExperienced | CopyEachOther | AccessEachOther):
+        if self.condition.learners == 2 or isinstance(teacher, CopyExperienced):
             self._step(self.two, self.one, isinstance(teacher, CopyEachOther))
         self.taken += 1
         if self.taken % self.condition.evaluate_every == 0:

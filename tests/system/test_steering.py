@@ -71,6 +71,10 @@ def test_a_run_is_started_seen_steered_and_ended_by_commands(laboratory: Path, t
         assert [robot["robot"] for robot in seen["robots"]] == ["r0"]
         assert (seen["phase"], seen["missing"]) == ("RUNNING", [])
         assert_a_viewer_only_sees(laboratory)
+        again = subprocess.run(
+            command("swarm", "run", experiment, "--lab", laboratory), cwd=ROOT, capture_output=True, text=True
+        )
+        assert again.stdout.startswith("a server conducts this run already")
         assert swarm("pause", "--at", laboratory, "--reason", "lunch")["accepted"]
         assert not swarm("pause", "--at", laboratory)["accepted"]
         seen = swarm("status", "--at", run, "--credentials", keys_of(laboratory, OPERATOR))

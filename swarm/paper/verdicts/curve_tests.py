@@ -28,6 +28,16 @@ class CurveTests:
 
     paper: Tested
     family_wise: Tested
+    times: FloatArray
+    p: FloatArray
+    """Of the family-wise test at each point (points,)."""
+    p_in_favour: FloatArray
+    """The same, 1 where the difference is against."""
+
+    def p_between(self, start: float, end: float) -> float:
+        """Of "it is never better in this time"."""
+        inside = (self.times >= start) & (self.times <= end)
+        return float(self.p_in_favour[inside].min(initial=1.0))
 
 
 def compare(better: Curves, worse: Curves, seed: int, in_time: bool = True) -> CurveTests:
@@ -41,6 +51,9 @@ def compare(better: Curves, worse: Curves, seed: int, in_time: bool = True) -> C
     return CurveTests(
         _tested(PAPER_TEST, pointwise.p, pointwise.t, better.times, in_time),
         _tested(FAMILY_WISE_TEST, family_wise.p, family_wise.direction, better.times, in_time),
+        better.times,
+        family_wise.p,
+        np.where(family_wise.direction > 0, family_wise.p, 1.0),
     )
 
 
@@ -61,14 +74,6 @@ def effect_between(better: Curves, worse: Curves, start: float, end: float) -> E
         )
     except PairingError:
         return None
-
-
-def span(windows: tuple[Window, ...]) -> Window:
-    """From the first window's start to the last one's end: what "from" and "until" are compared with.
-
-    One run that has not arrived yet can hide a difference that all others show, so gaps count for nothing.
-    """
-    return Window(windows[0].start, windows[-1].end)
 
 
 def _tested(name: str, p: FloatArray, direction: FloatArray, times: FloatArray, in_time: bool) -> Tested:

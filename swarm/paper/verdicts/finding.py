@@ -52,6 +52,10 @@ class Finding:
     family_wise_test: Tested | None = None
     effect: EffectSize | None = None
     effect_unit: str = ""
+    p: float | None = None
+    """Of the test that decides; None where none is made."""
+    arrivals: str = ""
+    """When the best paths first arrive, and when they are shortest."""
 
 
 def combined(verdicts: list[Verdict]) -> Verdict:

@@ -57,6 +57,7 @@ def test_who_is_revoked_stays_so_until_renewed(laboratory: CertifiedLaboratory) 
     assert states["robot-r1"] == "revoked"
     assert old not in listed(laboratory)
     assert not laboratory.keys("robot-r1").exists()
+    assert laboratory.update(renew=["all"])[-1].state == "revoked"
     assert laboratory.update(renew=["robot-r1"])[-1].state == "made"
     assert name_of(laboratory, "robot-r1") in listed(laboratory)
 

@@ -19,10 +19,12 @@ from swarm.gridworld.condition import (
     CopyExpert,
     GivenPaths,
     NoTeacher,
+    Precision,
     Teacher,
 )
 from swarm.gridworld.simulation import Simulation, simulate
 from swarm.gridworld.state import AgentArrays
+from swarm.learning.controller import QIncrease
 from swarm.learning.memory import Approach, ObservedPath
 from tests.support.plain_gridworld import PlainAgent, PlainSimulation
 
@@ -36,8 +38,10 @@ TEACHERS: dict[str, Teacher] = {
     "away from it": ALONG,
     "eight paths": EIGHT,
     "a path of one move": MIXED,
+    "a pair that learns alone": NoTeacher(learners=2),
     "expert": CopyExpert(moves=4, every=3),
-    "experienced": CopyExperienced(moves=4, every=3, goal_reachings=20),
+    "expert at once": CopyExpert(moves=4, every=3, copies_at_once=True),
+    "experienced": CopyExperienced(moves=4, every=3, goal_reachings=20, copies_at_once=True),
     "each other": CopyEachOther(moves=4, every=3),
     "more moves than a run has": CopyEachOther(moves=30, every=2),
     "access to the expert": AccessExpert(moves=6),
@@ -85,6 +89,53 @@ def test_engine_equals_the_plain_controller(teacher: Teacher, approach: Approach
     assert_same(compiled.two.agent, plain.two) if not isinstance(teacher, AccessExpert) else None
     learners = [plain.one, plain.two][: case.learners]
     assert trace.best_path_length.tolist() == [learner.lengths for learner in learners]
+
+
+READINGS: dict[str, dict[str, object]] = {
+    "stored": {"increase": QIncrease.STORED},
+    "average": {"increase": QIncrease.AVERAGE},
+    "single": {"precision": Precision.SINGLE},
+    "single and average": {"precision": Precision.SINGLE, "increase": QIncrease.AVERAGE},
+    "the last action checked": {"checks_last": True},
+}
+
+
+@pytest.mark.parametrize("changes", READINGS.values(), ids=READINGS)
+def test_engine_equals_the_plain_controller_under_every_reading(changes: dict[str, object]) -> None:
+    case = replace(condition(CopyEachOther(moves=4, every=3)), **changes)  # type: ignore[arg-type]
+    plain, compiled = PlainSimulation(case, 7, 1), Simulation(case, 7, 1)
+    for _ in range(4_000):
+        plain.step()
+    compiled.advance()
+    assert_same(compiled.one.agent, plain.one)
+    assert_same(compiled.two.agent, plain.two)
+
+
+def test_a_path_through_unlearnt_cells_has_not_arrived() -> None:
+    lucky, strict = (
+        simulate(condition(NoTeacher(), counts_luck=luck, evaluate_every=1), 1, 0).best_path_length[0]
+        for luck in (True, False)
+    )
+    differs = lucky != strict
+    assert differs.any()
+    assert np.all(strict[differs] == OPEN_10.longest_path)
+    assert np.array_equal(lucky[-100:], strict[-100:])
+
+
+def test_later_evaluations_come_seldom() -> None:
+    often = simulate(condition(NoTeacher()), 1, 0)
+    case = condition(NoTeacher(), points=100, later_every=500, later_points=4)
+    seldom = simulate(case, 1, 0)
+    assert case.evaluated_steps(4_000).tolist() == [*range(10, 1001, 10), 1500, 2000, 2500, 3000]
+    assert seldom.best_path_length.shape == (1, 104)
+    assert np.array_equal(seldom.best_path_length[0, :100], often.best_path_length[0, :100])
+
+
+def test_what_has_happened_is_tallied() -> None:
+    copied, tried, *_ = simulate(condition(CopyExpert(moves=4, every=3)), 1, 0).tally[0]
+    assert copied >= tried > 8
+    *_, suggested, at_random = simulate(condition(AccessEachOther(moves=6)), 1, 0).tally[0]
+    assert suggested > at_random > 0
 
 
 @pytest.mark.parametrize("teacher", TEACHERS.values(), ids=TEACHERS)

@@ -15,7 +15,6 @@ from swarm.errors import UserError
 from swarm.geometry import Grid, Move
 from swarm.gridworld.arena import OBSTACLE_100, Arena
 from swarm.gridworld.condition import Condition
-from swarm.gridworld.simulation import Trace
 from swarm.paper.claim import (
     Better,
     Check,
@@ -29,10 +28,11 @@ from swarm.paper.claim import (
 from swarm.paper.conditions import GIVEN_EIGHT_PATHS, SMALL_NO_IMITATION
 from swarm.paper.results import Results
 from swarm.paper.store import open_store
-from swarm.paper.verdicts.checks import move_range, shortest_path_moves
 from swarm.paper.verdicts.evidence import Evidence
+from swarm.paper.verdicts.facts import move_range, shortest_path_moves
 from swarm.paper.verdicts.finding import Finding, Verdict, combined
 from swarm.paper.verdicts.judge import judge
+from tests.support.traces import made_up_trace
 
 END = 2000
 SLOW = replace(SMALL_NO_IMITATION, name="slow", goal_reachings=None, steps=END, points=None)
@@ -54,7 +54,7 @@ def evidence(folder: Path, curves: dict[Condition, np.ndarray], ratios: np.ndarr
         store.admit(condition)
         for run, row in enumerate(rows):
             r = np.ones((1, 1)) if ratios is None else ratios[run : run + 1]
-            store.save(condition, run, Trace(row[None].astype(np.int32), r, END))
+            store.save(condition, run, made_up_trace(row[None].astype(np.int32), r, END))
     return Evidence(Results(store, min(map(len, curves.values()))), END)
 
 
@@ -84,13 +84,13 @@ def same(tmp_path_factory: pytest.TempPathFactory) -> Evidence:
     ("check", "verdict"),
     [
         (Better(QUICK, SLOW), Verdict.HOLDS),
-        (Better(QUICK, SLOW, 400, 1600, around_steps=100), Verdict.HOLDS),
-        (Better(QUICK, SLOW, None, 1600, around_steps=100), Verdict.HOLDS),
-        (Better(QUICK, SLOW, 400, 1200, around_steps=100), Verdict.IN_PART),
-        (Better(QUICK, SLOW, 1000, 1600, around_steps=100), Verdict.IN_PART),
-        (Better(QUICK, SLOW, None, 2500, around_steps=100), Verdict.UNDECIDED),
+        (Better(QUICK, SLOW, 400, 1600, rounded_steps=100), Verdict.HOLDS),
+        (Better(QUICK, SLOW, None, 1600, rounded_steps=100), Verdict.HOLDS),
+        (Better(QUICK, SLOW, 400, 1200, rounded_steps=100), Verdict.IN_PART),
+        (Better(QUICK, SLOW, 1000, 1600, rounded_steps=100), Verdict.IN_PART),
+        (Better(QUICK, SLOW, None, 2500, rounded_steps=100), Verdict.UNDECIDED),
         (Better(SLOW, QUICK), Verdict.DOES_NOT_HOLD),
-        (NoDifference(SLOW, QUICK), Verdict.DOES_NOT_HOLD),
+        (NoDifference(SLOW, QUICK, 1.0), Verdict.DOES_NOT_HOLD),
         (FindsShortestSooner(QUICK, SLOW), Verdict.HOLDS),
         (FindsShortestSooner(SLOW, QUICK), Verdict.DOES_NOT_HOLD),
         (FindsShortestBy(QUICK, 600), Verdict.HOLDS),
@@ -115,7 +115,7 @@ def test_a_finding_shows_both_tests_and_the_effect(many: Evidence) -> None:
 
 
 @pytest.mark.parametrize(
-    "check", [Better(QUICK, SLOW), NoDifference(QUICK, SLOW), FindsShortestSooner(QUICK, SLOW)]
+    "check", [Better(QUICK, SLOW), NoDifference(QUICK, SLOW, 1.0), FindsShortestSooner(QUICK, SLOW)]
 )
 def test_four_runs_decide_nothing(few: Evidence, check: Check) -> None:
     assert found(check, few).verdict is Verdict.UNDECIDED
@@ -131,7 +131,7 @@ def test_a_test_that_cannot_be_made_is_undecided_with_its_reason(tmp_path: Path)
 def test_where_there_is_no_difference(same: Evidence) -> None:
     assert found(Better(QUICK, SLOW), same).verdict is Verdict.DOES_NOT_HOLD
     assert found(FindsShortestSooner(QUICK, SLOW), same).verdict is Verdict.DOES_NOT_HOLD
-    assert found(NoDifference(QUICK, SLOW), same).verdict in (Verdict.HOLDS, Verdict.IN_PART)
+    assert found(NoDifference(QUICK, SLOW, 1.0), same).verdict in (Verdict.HOLDS, Verdict.IN_PART)
 
 
 def test_better_at_first_and_worse_for_longer_holds_in_part(tmp_path: Path) -> None:
@@ -139,7 +139,7 @@ def test_better_at_first_and_worse_for_longer_holds_in_part(tmp_path: Path) -> N
     seen = evidence(tmp_path, {QUICK: settles_high, SLOW: arriving(800, 100, seed=6)})
     finding = found(Better(QUICK, SLOW), seen)
     assert finding.verdict is Verdict.IN_PART
-    assert finding.why == "better at first, worse for longer"
+    assert finding.why == "better on average, but worse for longer"
 
 
 def test_the_order_of_ratios(tmp_path: Path) -> None:
@@ -188,14 +188,14 @@ def small_report(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, An
 
 def test_the_command_judges_and_reports(small_report: tuple[dict[str, Any], list[str]]) -> None:
     result, lines = small_report
-    assert [claim["figure"] for claim in result["claims"]] == ["fig3", "fig3", "fig13"]
-    gain = result["claims"][0]
+    assert [claim["figure"] for claim in result["claims"]] == ["fig3", "fig3", "fig3", "fig13"]
+    gain = result["claims"][1]
     assert gain["text"].startswith("As can be expected, there is a performance increase")
     assert gain["verdict"] == "holds"
     assert len(gain["comparisons"]) == 3
-    assert {"paper_test", "honest_test", "effect", "why"} <= set(gain["comparisons"][0])
-    assert result["claims"][2]["verdict"] == "holds in part"
-    assert lines[3].startswith("3 claims; holds: ")
+    assert {"paper_test", "family_wise_test", "effect", "why"} <= set(gain["comparisons"][0])
+    assert result["claims"][3]["verdict"] == "holds in part"
+    assert lines[4].startswith("4 claims; holds: ")
     json.dumps(result, allow_nan=False)
 
 

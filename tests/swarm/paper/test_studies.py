@@ -21,12 +21,14 @@ from swarm.paper.results import Results
 from swarm.paper.runner import missing_tasks, runs_of_each
 from swarm.paper.store import RunStore, Timing, open_store
 from swarm.paper.study import Drawing, Study, learning_score
+from tests.support.traces import made_up_trace
 
 SHORT = replace(SMALL_NO_IMITATION, name="short", goal_reachings=None, steps=30, points=None)
 
 
 def trace(*curves: list[int]) -> Trace:
-    return Trace(np.array(curves, np.int32), np.full((len(curves), 1), 0.5), steps=30)
+    ratios = np.full((len(curves), 1), 0.5)
+    return made_up_trace(np.array(curves, np.int32), ratios, steps=30)
 
 
 @pytest.mark.parametrize("word", ["3", "fig3", "figure3", "Figure 3", "fig03", "FIG.3", "figure_03"])
@@ -71,7 +73,7 @@ def all_conditions() -> list[Condition]:
 
 def test_figures_share_conditions_and_no_name_means_two() -> None:
     shared = runs_of_each((condition, 100) for condition in all_conditions())
-    assert len(shared) == 26
+    assert len(shared) == 27
     assert len(all_conditions()) > 40
 
 

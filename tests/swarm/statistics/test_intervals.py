@@ -7,13 +7,14 @@ import pytest
 from scipy import stats
 
 from swarm.errors import UserError
+from swarm.statistics.averages import average, weighted_iqm, weighted_mean
 from swarm.statistics.intervals import (
-    average,
-    bootstrap_bands,
+    Ends,
+    ends_of,
+    interval,
     pointwise_t_band,
+    sample_interval,
     simultaneous_band,
-    weighted_iqm,
-    weighted_mean,
 )
 from swarm.statistics.samples import Curves, Sample, Scale, average_of_learners, mean_level
 
@@ -60,30 +61,54 @@ SCALE = Scale(9, 100)
 
 def test_a_band_stays_inside_its_scale_and_holds_the_mean() -> None:
     values = np.random.default_rng(13).choice([9.0, 10.0, 100.0], size=(6, 50))
-    for band in (
-        pointwise_t_band(values, SCALE),
-        simultaneous_band(values, np.random.default_rng(1), SCALE),
-        bootstrap_bands(values, np.random.default_rng(1), weighted_iqm, SCALE)[1],
-    ):
+    ends = Ends(SCALE, np.full(50, 100.0))
+    for band in (pointwise_t_band(values, ends), simultaneous_band(values, np.random.default_rng(1), ends)):
         assert np.all((band.low >= 9) & (band.low <= band.centre))
         assert np.all((band.high <= 100) & (band.high >= band.centre))
 
 
 def test_far_from_the_ends_the_scale_changes_little() -> None:
-    values = np.random.default_rng(14).normal(50, 1, size=(30, 1))
-    free, bounded = pointwise_t_band(values), pointwise_t_band(values, Scale(0, 100))
-    np.testing.assert_allclose(bounded.errors, free.errors, rtol=0.01)
+    values = np.random.default_rng(14).normal(50, 10, size=(100, 1))
+    free, bounded = pointwise_t_band(values), sample_interval(values, Scale(0, 100))
+    np.testing.assert_allclose(bounded.errors, free.errors, rtol=0.1)
 
 
-def test_on_the_scale_the_interval_holds_a_skewed_truth_more_often_than_students() -> None:
-    """Two kinds of trial, 9 and 100 moves, of which a fifth are the long ones."""
-    rng, truth = np.random.default_rng(15), 0.8 * 9 + 0.2 * 100
-    values = rng.choice([9.0, 100.0], p=[0.8, 0.2], size=(20, 4000))
-    held = [
-        float(np.mean((band.low <= truth) & (truth <= band.high)))
-        for band in (pointwise_t_band(values), pointwise_t_band(values, SCALE))
-    ]
-    assert held[0] < 0.93 < held[1]
+def test_where_all_are_capped_the_interval_still_has_a_width() -> None:
+    band = sample_interval(np.full((10, 1), 100.0), SCALE)
+    assert band.high[0] == 100
+    assert 20 < band.low[0] < 97
+
+
+def test_a_replicate_may_still_be_where_the_slowest_was_at_half_the_time() -> None:
+    times, values = np.arange(1.0, 9), np.array([[100.0] * 3 + [9] * 5, [100.0] * 2 + [9] * 6])
+    ends = ends_of(Curves("two", times, values, (0, 1), SCALE))
+    assert ends is not None
+    assert ends.latest.tolist() == [100, 100, 100, 100, 100, 100, 100, 9]
+
+
+def learning(trials: int, seed: int) -> Curves:
+    """Runs that come down from 100 to 9, each at its own time; a fifth of them late."""
+    rng = np.random.default_rng(seed)
+    times = np.arange(1.0, 41)
+    arrival = rng.gamma(4, 3, size=trials) * np.where(rng.random(trials) < 0.2, 2, 1)
+    since = np.clip(times - arrival[:, None], 0, None)
+    values = np.where(times < arrival[:, None], 100.0, 9 + 40 / (1 + since))
+    return Curves("learning", times, np.clip(values, 9, 100), tuple(range(trials)), SCALE)
+
+
+@pytest.mark.parametrize("trials", [4, 10, 30])
+def test_bands_of_capped_learners_hold_the_truth(trials: int) -> None:
+    truth = learning(20_000, 1).values.mean(axis=0)
+    held, whole, samples = [], [], 150
+    for sample in range(samples):
+        curves = learning(trials, 2 + sample)
+        band = interval(curves)
+        wide = simultaneous_band(curves.values, np.random.default_rng(sample), ends_of(curves), resamples=300)
+        assert band is not None
+        held.append((band.low <= truth) & (truth <= band.high))
+        whole.append(np.all((wide.low <= truth) & (truth <= wide.high)))
+    assert np.mean(held) > 0.94
+    assert np.mean(whole) > 0.9
 
 
 def covers(band_low: np.ndarray, band_high: np.ndarray) -> bool:
@@ -100,30 +125,6 @@ def test_only_the_simultaneous_band_covers_the_whole_curve_with_its_level() -> N
         pointwise += covers(narrow.low, narrow.high)
     assert stats.binomtest(whole, trials, 0.95).pvalue > 0.01
     assert pointwise / trials < 0.9
-
-
-def test_bootstrap_bands_of_the_mean_agree_with_student() -> None:
-    values = np.random.default_rng(5).normal(3, 2, size=(200, 4))
-    percentile, simultaneous = bootstrap_bands(values, np.random.default_rng(6))
-    student = pointwise_t_band(values)
-    np.testing.assert_allclose(percentile.low, student.low, atol=0.05)
-    np.testing.assert_allclose(percentile.high, student.high, atol=0.05)
-    assert np.all(simultaneous.low < percentile.low)
-    assert np.all(simultaneous.high > percentile.high)
-
-
-def test_the_bootstrap_band_of_the_iqm_agrees_with_scipys_bootstrap() -> None:
-    values = np.random.default_rng(7).exponential(size=(60, 1))
-    band, _ = bootstrap_bands(values, np.random.default_rng(8), weighted_iqm, resamples=4000)
-    reference = stats.bootstrap(
-        (values[:, 0],),
-        lambda sample, axis: stats.trim_mean(sample, 0.25, axis=axis),
-        method="percentile",
-        n_resamples=4000,
-        rng=np.random.default_rng(9),
-    ).confidence_interval
-    assert band.low[0] == pytest.approx(reference.low, abs=0.03)
-    assert band.high[0] == pytest.approx(reference.high, abs=0.03)
 
 
 def test_a_band_is_the_same_for_the_same_generator() -> None:

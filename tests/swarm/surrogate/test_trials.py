@@ -45,6 +45,11 @@ def test_imitating_an_expert_pays(result: dict[str, Any]) -> None:
     assert 30 < result["conditions"]["copies"]["remembered"] <= 60, "ten of each trial, if it gets that far"
 
 
+def test_paths_that_arrive_by_luck_are_told_apart(result: dict[str, Any]) -> None:
+    alone = result["conditions"]["no-imitation"]
+    assert alone["mean_learnt"]["1000"][0] >= alone["mean_and_interval"]["1000"][0]
+
+
 CONDITIONS = ("imitation", "no-imitation")
 
 
