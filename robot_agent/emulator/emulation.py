@@ -101,9 +101,9 @@ def _port(
         firmware = Asercom(robot, wanted.model, rng)
         return SerialPort(firmware, at, now_ns, lock, faults)
     if wanted.link == "wifi":
-        return WifiPort(
-            Esp32(robot, rng, wanted.wifi_cycle_ns), int(address.rpartition(":")[2]), now_ns, lock, faults
-        )
+        host, _, number = address.rpartition(":")
+        esp32, where = Esp32(robot, rng, wanted.wifi_cycle_ns), (host or LOOPBACK, int(number))
+        return WifiPort(esp32, where, now_ns, lock, faults)
     if wanted.link == "spi":
         lpuck = LpuckSlave(robot, rng)
         return BusPort(None, lambda sent: lpuck.transfer(sent, now_ns()), at, now_ns, lock, faults)

@@ -127,22 +127,22 @@ class SerialPort(Port):
 
 
 class WifiPort(Port):
-    """A TCP port on this machine; one client at a time."""
+    """A TCP port at one of this machine's addresses; one client at a time."""
 
     def __init__(
-        self, firmware: Esp32, number: int, now_ns: Now, lock: threading.Lock, faults: Faults
+        self, firmware: Esp32, place: tuple[str, int], now_ns: Now, lock: threading.Lock, faults: Faults
     ) -> None:
         super().__init__(now_ns, lock, faults)
         self._firmware = firmware
-        self._number = number
+        self._host, self._number = place
         self._client: socket.socket | None = None
 
     @property
     def address(self) -> str:
-        return f"{LOOPBACK}:{self._number}"
+        return f"{self._host}:{self._number}"
 
     def _open(self) -> None:
-        self._listener = socket.create_server((LOOPBACK, self._number))
+        self._listener = socket.create_server((self._host, self._number))
         self._number = self._listener.getsockname()[1]
 
     def _shut(self) -> None:
