@@ -32,8 +32,9 @@ class LimitedInbox:
     def __init__(self, session: Session, topic: Topic[Any], robot: str, speed: float, tell: Tell) -> None:
         self.key = topic.key(robot)
         listen = session.recovering_inbox if topic.is_recovered else session.inbox_of_others
-        self._inbox = listen(self.key, topic.most_waiting)
-        self._at_once = min(AT_ONCE, topic.most_waiting)
+        self._most = topic.most_waiting
+        self._inbox = listen(self.key, self._most)
+        self._at_once = min(AT_ONCE, self._most)
         self._per_s = (FASTER * topic.rate_hz if topic.rate_hz else UNRATED_PER_S) * speed
         self._allowed = float(self._at_once)
         self._tell = tell
@@ -44,7 +45,7 @@ class LimitedInbox:
 
     def poll(self) -> list[WireSample]:
         """What has arrived since the last look, in order."""
-        return self._inbox.poll()
+        return self._inbox.poll(self._most)
 
     def limited(self, items: list[Item], now_s: float) -> list[Item]:
         """Of what is its sender's own, what is not too much; `now_s` never goes back."""

@@ -1,7 +1,6 @@
 """What an experiment file says: the run, the arena, the rules of learning, the robots.
 
-`Experiment.load` is the one door: it also checks what no single value shows, such as two robots with
-one id or compartments that overlap.
+`Experiment.load` is the one door: it also checks what no single value shows, such as two robots of one id.
 """
 
 from __future__ import annotations
@@ -29,7 +28,6 @@ from swarm.learning.random import spawned_generator
 
 OLDEST_POSE_S = 0.9
 """A tenth below the second at which a robot stands for want of a newer pose."""
-
 
 REAL_LINKS = ("serial", "wifi", "i2c", "spi")
 """Drivers of real robots; a simulation runs them against emulated ones."""

@@ -81,6 +81,8 @@ class LockstepNode:
         header = Header(EPOCH, self._sequencer.following(key), self._t_ns)
         self._published.append(pack_item(key, header, message.SerializeToString()))
 
+    losses = 0
+
     def lag_s(self) -> float:
         return 0.0
 

@@ -55,6 +55,10 @@ class Node(Protocol):
     def lag_s(self) -> float:
         """Real seconds by which this process is behind what others send; 0 where time is a message."""
 
+    @property
+    def losses(self) -> int:
+        """How often the connection was lost: what was sent meanwhile never comes."""
+
     def run(self, step: Step) -> None:
         """Step at every tick, until the run ends.
 
@@ -192,6 +196,10 @@ class LiveNode:
 
     def lag_s(self) -> float:
         return self._lag.seconds(self._clock.now_ns())
+
+    @property
+    def losses(self) -> int:
+        return self._server.losses
 
     def give_account(self, name: str) -> None:
         """Tell the server, as the last thing, how much this process has sent and received."""

@@ -89,10 +89,10 @@ class Inbox:
     def __init__(self, subscriber: zenoh.Subscriber[Samples] | AdvancedSubscriber[Samples]) -> None:
         self._subscriber = subscriber
 
-    def poll(self) -> list[WireSample]:
-        """What has arrived since the last call, in order; of more than `MOST_AT_ONCE` the rest comes next."""
+    def poll(self, most: int = MOST_AT_ONCE) -> list[WireSample]:
+        """What has arrived since the last call, in order; of more than `most` the rest comes next."""
         samples: list[WireSample] = []
-        while len(samples) < MOST_AT_ONCE and (sample := self._subscriber.try_recv()) is not None:
+        while len(samples) < most and (sample := self._subscriber.try_recv()) is not None:
             samples.append(_sample(sample))
         return samples
 

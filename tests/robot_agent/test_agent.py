@@ -181,11 +181,20 @@ def test_a_move_that_an_emergency_ended_is_told_of_by_its_cell(rig: Rig) -> None
 
 def test_its_wheels_stand_while_it_hears_nothing_new(rig: Rig) -> None:
     rig.run(30)
-    rig.node.behind_s = 0.31
+    rig.node.behind_s = 0.26
     deaf = rig.run(3)
     assert stands(deaf[:5])
     assert of(deaf, "move") == []
     rig.node.behind_s = 0.0
+    assert stands(rig.run(1, None)), "until it has heard that there is no emergency"
+    assert len(of(rig.run(30), "move")) > 5
+
+
+def test_its_wheels_stand_after_a_lost_connection_until_it_hears_the_run_s_state(rig: Rig) -> None:
+    """An emergency stop that was sent meanwhile never comes."""
+    rig.run(30)
+    rig.node.losses += 1
+    assert stands(rig.run(1, None))
     assert len(of(rig.run(30), "move")) > 5
 
 

@@ -24,6 +24,7 @@ class LocalNode:
     def __init__(self) -> None:
         self.t_ns = 0
         self.behind_s = 0.0
+        self.losses = 0
         self.published: list[tuple[str, Any]] = []
         self.received = Receipts()
         self._subscriptions: list[tuple[str, Subscription[Any]]] = []
