@@ -91,8 +91,8 @@ OPTIONS = (
             "change-stored": _increase(QIncrease.STORED),
             "average-as-printed": _increase(QIncrease.AVERAGE),
         },
-        "With the change that the rule asks for R of SE ends at 0.7, as in figure 14; with differences of the "
-        "stored values at 0.08.",
+        "With the change that the rule asks for, R of SE ends at 0.7, as in figure 14; with those of the "
+        "stored values, at 0.08.",
     ),
     Option(
         "precision",
