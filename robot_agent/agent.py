@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from robot_agent.activities import Activity, EmergencyStop, Finished, Seen, Task, Visiting, Waiting
+from robot_agent.activities import (
+    Activity,
+    EmergencyStop,
+    Finished,
+    MoveUnderWay,
+    Seen,
+    Task,
+    Visiting,
+    Waiting,
+)
 from robot_agent.checkpoint import Checkpoint, Saved
 from robot_agent.drivers.health import TellsHealth
 from robot_agent.drivers.interfaces import Body
@@ -52,6 +61,8 @@ class Agent:
         elif self._task.policy.finished:
             self._become(Finished(self._task, self.activity.state))
         elif self._task.inbox.stopped:
+            if self._task.inbox.server_lost and self._gives_up:
+                self._reporter.warning("server_lost", f"the server is silent{self._gives_up}")
             self._become(self.activity.stopped())
         else:
             self._become(self.activity.decide(seen))
@@ -124,8 +135,16 @@ class Agent:
 
     def _stop_at_once(self, reason: str) -> None:
         if not isinstance(self.activity, EmergencyStop):
-            self._reporter.warning("estop", f"{reason}: the wheels stand until it is released")
+            text = f"{reason}: the wheels stand until it is released{self._gives_up}"
+            self._reporter.warning("estop", text)
             self._become(self.activity.emergency())
+
+    @property
+    def _gives_up(self) -> str:
+        """What a stop costs, for the log: who replays it has to know of a choice that came to nothing."""
+        if not isinstance(self.activity, MoveUnderWay):
+            return ""
+        return f"; the move from cell {self.activity.state} is not learnt from"
 
     def _tell_pause(self) -> None:
         """Once it stands, and once it may go on: what became of the operator's order."""

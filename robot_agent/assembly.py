@@ -17,11 +17,13 @@ from robot_agent.drivers.registry import make_driver
 from robot_agent.inbox import AgentInbox
 from robot_agent.navigation.motion import Motion, MotionSettings
 from robot_agent.navigation.pose_estimator import PoseAt, PoseEstimator
+from robot_agent.policies.access import AccessedRobot
 from robot_agent.policies.expert import ExpertPolicy
 from robot_agent.policies.learner import LearningPolicy
 from robot_agent.policies.policy import Policy
 from robot_agent.reports import Reporter
 from swarm.config.experiment import Experiment, RobotSettings, Role
+from swarm.messages import topics
 from swarm.runtime.emergency_latch import EmergencyLatch
 from swarm.runtime.node import Node
 
@@ -90,10 +92,23 @@ class Assembly:
         experiment = self._experiment
         if robot.role is Role.EXPERT:
             return ExpertPolicy(experiment.compartment(robot).grid, reporter)
-        policy = LearningPolicy(experiment.learner(robot, self._trial), experiment.run.moves, reporter)
+        policy = LearningPolicy(
+            experiment.learner(robot, self._trial),
+            experiment.run.moves,
+            reporter,
+            is_accessed=experiment.is_accessed(robot),
+            accessed=self._accessed(robot),
+        )
         for path in robot.given_paths():
             policy.remember(path, "given")
         return policy
+
+    def _accessed(self, robot: RobotSettings) -> AccessedRobot | None:
+        """The other robot whose internal state this one may read: nobody subscribes to it otherwise."""
+        if not robot.accesses:
+            return None
+        told = self._node.subscribe(topics.BEST_MOVES, robot.accesses)
+        return AccessedRobot(told, self._experiment.compartment(robot).grid.states)
 
 
 def _visits(

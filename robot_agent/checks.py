@@ -33,6 +33,7 @@ def robot_checks(experiment: Experiment, robots: tuple[RobotSettings, ...]) -> I
         yield _driver(robot, (*key, "driver"))
         if robot.driver == SIMULATED:
             yield _tried(f"skirt of {robot.id}", robot.skirt, colour, (*key, "skirt"))
+            yield from _reflex(robot, (*key, "keep_off_m"))
     yield from _camera(experiment, robots)
 
 
@@ -41,6 +42,12 @@ def _driver(robot: RobotSettings, key: Key) -> Finding:
     if robot.driver not in known:
         return bad(about, f"there is no driver {robot.driver!r}", nearest(robot.driver, known), key)
     return good(about, robot.driver)
+
+
+def _reflex(robot: RobotSettings, key: Key) -> Iterator[Finding]:
+    if robot.keep_off_m:
+        text = "keep_off_m needs proximity sensors, which a simulated robot has not"
+        yield bad(f"reflex of {robot.id}", text, "set it to 0, or leave it out", key)
 
 
 def _camera(experiment: Experiment, robots: tuple[RobotSettings, ...]) -> Iterator[Finding]:

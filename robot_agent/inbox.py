@@ -12,9 +12,9 @@ from swarm.messages import topics
 from swarm.runtime.emergency_latch import EmergencyLatch, by
 from swarm.runtime.node import Node
 
-HEARS_WITHIN_S = 0.3
-"""With a control period of 0.1 s and the way to the wheels, these stand within half a second of an emergency
-stop that gets lost. Poses come ten times a second: two of them may be late."""
+HEARS_WITHIN_S = 0.25
+"""Poses come ten times a second, one a control period: two may be missing, and at the third the wheels stand,
+0.3 s after an emergency stop that gets lost. Half a second is allowed."""
 
 
 class AgentInbox:
@@ -38,20 +38,35 @@ class AgentInbox:
         self._silent_ns = round(settings.without_server_s * NS_PER_S)
         self._stops_in_silence = settings.without_server is WithoutServer.STOP
         self._heard_ns = self._t_ns = 0
+        self._losses = 0
+        self.cut_off = False
+        """Whether an emergency stop may have been sent that it has not heard: then the wheels stand."""
         self._order = pb.Order(kind=pb.Order.RUN)
 
     def poll(self, t_ns: int) -> None:
         """Take in the run's state and orders; what releases an emergency comes after all that declares it."""
         self._t_ns = t_ns
+        states = self._run_states.take()
+        self._judge_link(heard_state=bool(states))
         for stop in self._estops.take():
             self.latch.engage(f"emergency stop by {by(stop.message.operator, stop.message.reason)}")
-        for state in self._run_states.take():
+        for state in states:
             self._phase = state.message.phase
             self._heard_ns = t_ns
             if self._phase == pb.RunState.ESTOPPED:
                 self.latch.engage("emergency stop, says the server")
         for order in self._orders.take():
             self._obey(order.message)
+
+    def _judge_link(self, *, heard_state: bool) -> None:
+        """Whatever is heard comes in order; but what was sent while the connection was lost never comes. So
+        after every gap the run's state, which tells of an emergency, has to be heard first.
+        """
+        losses, self._losses = self._losses, self._node.losses
+        if self._node.lag_s() > HEARS_WITHIN_S or losses != self._losses:
+            self.cut_off = True
+        elif heard_state:
+            self.cut_off = False
 
     def _obey(self, order: pb.Order) -> None:
         """What a robot is to do stays as it was while the robot is paused."""
@@ -79,11 +94,6 @@ class AgentInbox:
         return self._t_ns - self._heard_ns <= self._silent_ns
 
     @property
-    def cut_off(self) -> bool:
-        """Whether an emergency stop may be on its way that has not been heard: then the wheels stand."""
-        return self._node.lag_s() > HEARS_WITHIN_S
-
-    @property
     def held(self) -> str:
         """Why the robot is to stand although its trial goes on; empty if it is not."""
         if self._phase == pb.RunState.PAUSED:
@@ -100,9 +110,12 @@ class AgentInbox:
         """Whether whatever is under way is given up: the trial is over, or its server is lost and the run's
         settings want that.
         """
-        if self._stops_in_silence and not self._hears_server:
-            return True
-        return self._order.kind == pb.Order.STOP or self._phase == pb.RunState.ENDED
+        return self.server_lost or self._order.kind == pb.Order.STOP or self._phase == pb.RunState.ENDED
+
+    @property
+    def server_lost(self) -> bool:
+        """Whether the server has been silent for so long that this robot stops at once."""
+        return self._stops_in_silence and not self._hears_server
 
     @property
     def bad(self) -> int:

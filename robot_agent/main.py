@@ -6,7 +6,6 @@ import argparse
 import sys
 from functools import partial
 from importlib import import_module
-from pathlib import Path
 
 from robot_agent.addresses import add_address_argument, addresses
 from robot_agent.agent import Agent
@@ -16,9 +15,11 @@ from robot_agent.checks import robot_checks
 from swarm.checkup.finding import require_good
 from swarm.checkup.machine import writable
 from swarm.config.arguments import place
-from swarm.config.experiment import Experiment
+from swarm.config.experiment import Experiment, RobotSettings
 from swarm.errors import UserError, guarded, nearest
 from swarm.extras import naming_extras
+from swarm.messages import topics
+from swarm.runtime.clock_report import report_clock
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
@@ -27,6 +28,7 @@ from swarm.runtime.process import (
     leave_with_parent,
     load_experiment,
 )
+from swarm.runtime.receipts import write_receipts
 from swarm.signals import leave_on_signals
 
 
@@ -80,12 +82,14 @@ def run(arguments: argparse.Namespace) -> None:
         if arguments.state:
             for agent, name in zip(agents, names, strict=True):
                 _go_on(agent, name, arguments, node.run_id, str(identity.fingerprint))
+        if not arguments.supervised:
+            report_clock(node, topics.EVENT, names)
         try:
             node.run(partial(_step, agents))
         finally:
             _stop(agents)
             if arguments.keys:
-                _write_keys(arguments.keys, node.keys_received)
+                write_receipts(arguments.keys, names, node.received)
 
 
 def _check(arguments: argparse.Namespace, experiment: Experiment, names: list[str]) -> None:
@@ -93,7 +97,17 @@ def _check(arguments: argparse.Namespace, experiment: Experiment, names: list[st
     robots = tuple(experiment.robot_named(name) for name in names)
     require_good(arguments.experiment, robot_checks(experiment, robots))
     if arguments.state:
+        _refuse_access(robots)
         require_good(arguments.experiment, [writable("--state", arguments.state)])
+
+
+def _refuse_access(robots: tuple[RobotSettings, ...]) -> None:
+    for robot in robots:
+        if robot.accesses:
+            raise UserError(
+                f"--state: {robot.id!r} accesses the internal state of {robot.accesses!r}, which is not "
+                "its own to keep: leave --state out"
+            )
 
 
 def _go_on(agent: Agent, name: str, arguments: argparse.Namespace, run_id: str, identity: str) -> None:
@@ -108,11 +122,6 @@ def _step(agents: list[Agent], t_ns: int) -> None:
         agent.step(t_ns)
     for agent in agents:
         agent.keep_emergency()
-
-
-def _write_keys(file: Path, keys_received: set[str]) -> None:
-    """One key a line: what the robot heard of the others can be read off it."""
-    file.write_text("".join(f"{key}\n" for key in sorted(keys_received)), encoding="utf-8")
 
 
 def _stop(agents: list[Agent]) -> None:
@@ -169,6 +178,7 @@ def _parser() -> OneLineParser:
         "--keys",
         type=place,
         metavar="FILE",
-        help="write every key of which a message was received here at the end, one a line",
+        help="write how much was received under every key, as JSON, at the end: `swarm check --firewall` "
+        "adds it up",
     )
     return parser

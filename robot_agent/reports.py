@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TypeVar
 
 from google.protobuf.message import Message
@@ -121,6 +122,15 @@ class Reporter:
         """A path that entered the memory; `source` is "given" or "camera"."""
         message = pb.PathRemembered(path=number, moves=path.moves, source=source, visit=visit)
         self._publish(topics.PATH, message)
+
+    def accessed_path(self, number: int) -> None:
+        """Another's internal state entered the memory, as a path whose moves it decides (section 2.4)."""
+        self._publish(topics.PATH, pb.PathRemembered(path=number, source="access"))
+
+    def best_moves(self, move: int, best: Iterable[Iterable[int]]) -> None:
+        """The best actions of every state, to whoever may access them."""
+        bits = [sum(1 << action for action in actions) for actions in best]
+        self._publish(topics.BEST_MOVES, pb.BestMoves(move=move, best=bits))
 
     def observation(self, observation: pb.Observation) -> None:
         """Where a copied path comes from, frame by frame."""

@@ -14,7 +14,7 @@ def main() -> None:
 
 
 def _run() -> None:
-    require_extra("lab", "foxglove_schemas_protobuf", "rich", "small_mcap")
+    require_extra("lab", "foxglove_schemas_protobuf", "rich", "small_mcap", "tomlkit")
     from server.command import run
 
     run()

@@ -27,7 +27,7 @@ class RunProgress:
         self._progress = Progress(
             TextColumn("{task.description}"),
             BarColumn(bar_width=10),
-            TextColumn("{task.completed:.0f}/{task.total:.0f} moves"),
+            TextColumn("{task.completed:.0f}/{task.total:.0f} {task.fields[what]}"),
             TextColumn("{task.fields[learning]}"),
             TimeRemainingColumn(),
             console=console,
@@ -36,7 +36,7 @@ class RunProgress:
         self._monotonic_s = monotonic_s
         self._line_due_s = monotonic_s() + LINE_EVERY_S
         self._trial = ""
-        self._task = self._progress.add_task("", total=experiment.run.moves, learning="")
+        self._task = self._progress.add_task("", total=experiment.run.moves, learning="", what="moves")
 
     def __enter__(self) -> RunProgress:
         self._progress.start()
@@ -49,12 +49,19 @@ class RunProgress:
         """A new trial, called as its log is: the bar starts again."""
         of = f" of {self._experiment.run.trials}" if self._experiment.run.trials > 1 else ""
         self._trial = f"{trial_name(trial)}{of}"
-        self._progress.reset(self._task, description=self._trial, learning="")
+        self._progress.reset(self._task, description=self._trial, learning="", what="moves")
+
+    def played(self, trial: int, count: int) -> None:
+        """Of several trials at a time one has ended: the bar counts trials."""
+        of = self._experiment.run.trials
+        self._progress.update(self._task, description="", what="trials", completed=count, total=of)
+        if self._progress.disable:
+            self._progress.console.print(f"{trial_name(trial)}: played, {count} of {of}", highlight=False)
 
     def show(self, conductor: Conductor, elapsed_s: float) -> None:
-        """Moves of the slowest learner, the trial's hours, and the best path of each condition."""
+        """Moves of the slowest learner, the trial's time, and the best path of each condition."""
         made = min(conductor.moves[robot.id] for robot in self._experiment.learners)
-        learning = f"{elapsed_s / 3600:.1f} h, path: {', '.join(self._best_paths(conductor)) or 'none yet'}"
+        learning = f"{span(elapsed_s)}, path: {', '.join(self._best_paths(conductor)) or 'none yet'}"
         self._progress.update(self._task, completed=made, learning=learning)
         if self._progress.disable and self._monotonic_s() >= self._line_due_s:
             self._line_due_s = self._monotonic_s() + LINE_EVERY_S
@@ -77,12 +84,19 @@ class RunProgress:
 
 def print_summary(summary: Mapping[str, Any]) -> None:
     """Where the run is, how long it took, and what to do next."""
-    hours = summary["sim_s"] / 3600
     print(f"run        {summary['run']}")
-    print(f"moves      {summary['moves']}, {hours:.1f} h of the robots' time in {summary['wall_s']:.0f} s")
+    robots_time, own_time = span(summary["sim_s"]), span(summary["wall_s"])
+    print(f"moves      {summary['moves']}, {robots_time} of the robots' time in {own_time}")
     print(f"speed      {times(summary['real_time_factor'])} times real time")
     print(f"digest     {summary['digest'][:16]}")
     print(f"next       swarm analyze {summary['run']}")
+
+
+def span(seconds: float) -> str:
+    """A time in the unit in which it says something."""
+    if seconds < 120:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 3600 else f"{seconds / 3600:.1f} h"
 
 
 def times(factor: float) -> str:

@@ -1,4 +1,4 @@
-"""A run: its trials one after the other, each in an environment of its own."""
+"""A run: its trials, each in an environment of its own, and what they leave behind."""
 
 from __future__ import annotations
 
@@ -6,29 +6,30 @@ import socket
 import sys
 import time
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from server.conductor.conductor import Conductor
-from server.conductor.earlier import earlier_progress
-from server.conductor.run_control import RunControl
-from server.control.desk import Desk
-from server.control.status_board import StatusBoard
-from server.processes.environment import Environment, TrialEnvironment, TrialPlan
+from server.experiment_text import experiment_bytes
+from server.processes.environment import Environment
 from server.progress import RunProgress
-from server.recording.foxglove_views import Views
-from server.recording.health import Health
-from server.recording.provenance import metadata, versions
-from server.recording.recorder import Recorder, digest
+from server.recording.provenance import versions
+from server.recording.recorder import digest
 from server.run_directory import MANIFEST, RunDirectory
-from server.trial import Trial, TrialResult
+from server.trial import TrialResult
+from server.trial_player import TrialPlayer, play_together
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, in_words
-from swarm.runtime.emergency_latch import EmergencyLatch
-from swarm.runtime.identity import RunIdentity
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """How a run is simulated."""
+
+    speed: float | None
+    """So many times as fast as life; None for lockstep."""
+    emulate: bool
 
 
 @dataclass
@@ -44,7 +45,16 @@ class Run:
     progress: RunProgress
     run_id: str = ""
     """Random, and new with every run; empty in a lockstep, which nobody can join and anybody can repeat."""
-    results: list[TrialResult] = field(default_factory=list)
+    changes: Sequence[str] = ()
+    """What `--set` said in place of the file's values; the experiment has it."""
+    jobs: int = 1
+    """Trials at a time; more than one on simulated robots in lockstep alone."""
+    scheduler: str = "processes"
+    """Where those are played, if there are several at a time."""
+    simulation: Simulation | None = None
+    """How it is simulated; None on the robots of a laboratory."""
+    results: dict[int, TrialResult] = field(default_factory=dict)
+    """By trial; those that an earlier server completed are not repeated."""
     versions: dict[str, str] = field(default_factory=versions)
 
     def run(self) -> dict[str, Any]:
@@ -54,20 +64,14 @@ class Run:
 
     def _held(self) -> dict[str, Any]:
         began = time.monotonic()
-        copy = self._begin()
+        kept = self._begin()
+        to_do = [trial for trial in self.trials if trial not in self.results]
         state = "interrupted"
         try:
-            for trial in self.trials:
-                self.progress.begin(trial)
-                self._trial(trial, copy)
-                if self.results[-1].stopped:
-                    state = "stopped"
-                    break
-            else:
-                state = "complete"
+            state = self._play(to_do, kept)
         finally:
             self._write_manifest(state)
-            summary = self._summary(time.monotonic() - began)
+            summary = self._summary(to_do, time.monotonic() - began)
             self.directory.write_json("run.json", {**summary, **self._circumstances()})
             self.directory.release()
         return summary
@@ -76,68 +80,57 @@ class Run:
         """What stands in the directory before the first trial; nothing is left if there is no room for it."""
         try:
             self.directory.reserve()
-            copy = self.directory.keep_experiment(self.file)
+            kept = self.directory.keep_experiment(experiment_bytes(self.file, self.changes))
+            self.directory.close_logs()
             self._write_manifest("running")
         except OSError as error:
             self.directory.remove()
             raise UserError(f"{self.directory.path}: {in_words(error)}") from error
-        return copy
+        return kept
 
-    def _trial(self, trial: int, file: Path) -> None:
-        """Also of a trial that is interrupted it is known how far it came."""
-        program = self.versions["swarm-runtime"]
-        identity = RunIdentity.of(self.experiment, trial, self.run_id, program)
-        plan = TrialPlan(identity, file, self.directory.output(trial))
-        with self.environment(plan) as environment:
-            played = self._assembled(environment, identity, file)
-            try:
-                with self._reached(environment):
-                    played.run()
-            finally:
-                self.results.append(played.result())
-
-    def _assembled(self, environment: TrialEnvironment, identity: RunIdentity, file: Path) -> Trial:
-        """A trial, put together from its parts."""
-        experiment, reporter, prompts = self.experiment, environment.reporter, environment.prompts
-        *before, log = self.directory.logs(identity.trial)
-        board = StatusBoard(experiment, identity, prompts, lambda: environment.hub.missing)
-        latch = EmergencyLatch(self.directory.emergency if environment.session else None)
-        robots = [robot.id for robot in experiment.robot]
-        control = RunControl(robots, reporter, latch, prompts, board.pose_of)
-        carrier, earlier = environment.carrier, earlier_progress(before)
-        conductor = Conductor(experiment, identity, reporter, carrier, control, earlier)
-        desk = None
-        if environment.session:
-            desk = Desk(environment.session, control, board, prompts, conductor, reporter)
-        about = metadata(experiment, file, identity, self.versions, self.directory.part)
-        return Trial(
-            environment,
-            conductor,
-            Recorder(log, about),
-            Health(reporter),
-            Views(experiment),
-            self.progress.show,
-            desk,
+    def _play(self, trials: Sequence[int], file: Path) -> str:
+        """One after the other, or several at a time; what became of them."""
+        player = TrialPlayer(
+            self.experiment,
+            file,
+            self.changes,
+            self.directory,
+            self.versions,
+            self.run_id,
+            is_repeatable=self.simulation is not None,
         )
+        if self.jobs > 1:
+            play_together(player, trials, self.scheduler, self.jobs, self._note_and_show)
+            return "complete"
+        for trial in trials:
+            self.progress.begin(trial)
+            player.play(trial, self.environment, self.progress.show, self._note)
+            if self.results[trial].stopped:
+                return "stopped"
+        return "complete"
 
-    def _reached(self, environment: TrialEnvironment) -> AbstractContextManager[None]:
-        """Where people find a run that they can steer."""
-        session = environment.session
-        return self.directory.reached_at(session.endpoint) if session else nullcontext()
+    def _note(self, trial: int, result: TrialResult) -> None:
+        self.results[trial] = result
+        if result.complete:
+            self._write_manifest("running")
 
-    def _summary(self, wall_s: float) -> dict[str, Any]:
+    def _note_and_show(self, trial: int, result: TrialResult) -> None:
+        self._note(trial, result)
+        self.progress.played(trial, len(self.results))
+
+    def _summary(self, done: Sequence[int], wall_s: float) -> dict[str, Any]:
+        """Of the run; its pace is that of the trials that this server has done."""
         logs = [log for trial in self.trials for log in self.directory.logs(trial)]
-        logs = [log for log in logs if log.exists()]
-        sim_s = sum(result.sim_s for result in self.results)
+        paced_s = sum(self.results[trial].sim_s for trial in done if trial in self.results)
         return {
             "run": str(self.directory.path),
             "run_id": self.run_id,
             "log": [str(log) for log in logs],
             "digest": digest(logs),
-            "moves": sum(result.moves for result in self.results),
-            "sim_s": round(sim_s, 3),
+            "moves": sum(result.moves for result in self.results.values()),
+            "sim_s": round(sum(result.sim_s for result in self.results.values()), 3),
             "wall_s": round(wall_s, 3),
-            "real_time_factor": round(sim_s / wall_s, 2),
+            "real_time_factor": round(paced_s / wall_s, 2),
         }
 
     def _circumstances(self) -> dict[str, Any]:
@@ -146,13 +139,13 @@ class Run:
             "ended": datetime.now(UTC).isoformat(),
             "host": socket.gethostname(),
             "command": sys.argv,
-            "trials": [asdict(result) for result in self.results],
+            "trials": [asdict(result) for _, result in sorted(self.results.items())],
         }
 
     def _write_manifest(self, state: str) -> None:
         """Conditions x trials x seeds, one record each."""
         run = self.experiment.run
-        complete = {number for number, result in enumerate(self.results) if result.complete}
+        complete = {trial: asdict(result) for trial, result in self.results.items() if result.complete}
         records = [
             {
                 "condition": robot.group,
@@ -160,11 +153,13 @@ class Run:
                 "role": robot.role.value,
                 "trial": trial,
                 "seed": run.seed,
-                "log": self.directory.logs(trial)[0].name,
-                "state": "complete" if number in complete else state,
+                "log": self.directory.log(trial).name,
+                "state": "complete" if trial in complete else state,
             }
-            for number, trial in enumerate(self.trials)
+            for trial in self.trials
             for robot in self.experiment.robot
         ]
-        about = {"name": run.name, "run_id": self.run_id, "moves": run.moves}
-        self.directory.write_json(MANIFEST, {**about, "trials": records})
+        about = {"name": run.name, "run_id": self.run_id, "moves": run.moves, "set": list(self.changes)}
+        simulation = asdict(self.simulation) if self.simulation else None
+        content = {**about, "simulation": simulation, "trials": records, "results": complete}
+        self.directory.write_json(MANIFEST, content)

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 from swarm.errors import RunFailedError, UserError
 
 if TYPE_CHECKING:
-    import polars as pl
     from matplotlib.figure import Figure
 
 
@@ -70,9 +69,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
             os.fsync(file.fileno())
         temporary.replace(path)
     except OSError as error:
-        raise RunFailedError(
-            f"{path} cannot be written ({error.strerror or error}); what was finished is kept"
-        ) from error
+        raise RunFailedError(f"{path} cannot be written ({error.strerror or error})") from error
     finally:
         temporary.unlink(missing_ok=True)
     return path
@@ -87,11 +84,6 @@ def write_text(text: str, path: Path) -> Path:
 def write_json(content: Any, path: Path) -> Path:
     """Plain data, whole; ValueError for a number that JSON does not know."""
     return write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", path)
-
-
-def write_table(table: pl.DataFrame, path: Path) -> Path:
-    """A table, whole: as text if the name ends in .csv, else as Parquet."""
-    return write_whole(path, table.write_csv if path.suffix == ".csv" else table.write_parquet)
 
 
 PICTURE_DPI = 150

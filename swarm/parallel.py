@@ -6,6 +6,7 @@ import importlib
 import multiprocessing
 import os
 import signal
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -17,6 +18,8 @@ from swarm.extras import require_extra
 from swarm.interpreter import safe_path
 
 SCHEDULERS = ("processes", "dask")
+LEAVE_WITHIN_S = 10.0
+"""To put in order what a worker has, such as the processes of a trial, takes 5 s at most."""
 
 
 def available_cores() -> list[int]:
@@ -79,16 +82,28 @@ def _through(pool: Executor) -> Callable[[Callable[..., Any], Iterable[tuple[Any
 @contextmanager
 def _processes(jobs: int) -> Iterator[Executor]:
     # Threads of polars do not survive a fork, so that workers are started afresh.
-    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), initializer=_leave_interrupts)
+    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), initializer=_obey_parent)
     try:
         yield pool
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _leave_interrupts() -> None:
-    """Ctrl-C reaches all processes of a terminal; the parent is the one that answers it."""
+def _obey_parent() -> None:
+    """Ctrl-C reaches all processes of a terminal; the parent is the one that answers it. When the parent is
+    gone, killed perhaps, nobody waits for a result: its workers leave too.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_await_parents_end, daemon=True).start()
+
+
+def _await_parents_end() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os.kill(os.getpid(), signal.SIGTERM)
+        threading.Event().wait(LEAVE_WITHIN_S)
+        os._exit(1)
 
 
 @contextmanager

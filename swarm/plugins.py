@@ -1,4 +1,4 @@
-"""Which drivers, tracking systems and checks there are: those that ship, and those of other packages.
+"""Which drivers, tracking systems, checks and cameras of logs there are: what ships, and of other packages.
 
 A package of somebody's own joins by an entry point in a group. What ships is named here, so that an
 updated checkout finds it without being installed anew; a name that ships cannot be taken. Nothing is
@@ -16,6 +16,9 @@ TRACKERS = "swarm.trackers"
 CHECKS = "swarm.checks"
 """Functions that take an `Experiment` and give findings, before anything starts."""
 
+FRAMES = "swarm.frames"
+"""By driver, functions like `swarm.film.camera.Retaking`: what a robot's camera saw, from a log."""
+
 SHIPPED = {
     CHECKS: {
         "robot_agent": "robot_agent.checks:checks",
@@ -28,6 +31,7 @@ SHIPPED = {
         "i2c": "robot_agent.drivers.epuck_driver:i2c",
         "spi": "robot_agent.drivers.epuck_driver:spi",
     },
+    FRAMES: {"sim": "robot_agent.offline.retaken:retaken_frames"},
     TRACKERS: {
         "sim": "tracker_bridge.backends.sim:SYSTEM",
         "vicon": "tracker_bridge.backends.vicon:SYSTEM",

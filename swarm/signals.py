@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -45,7 +46,13 @@ def obeying_signals() -> Iterator[None]:
 
 @contextmanager
 def signals_held() -> Iterator[None]:
-    """A signal that comes within the block is obeyed at its end, so that the block is done wholly."""
+    """A signal that comes within the block is obeyed at its end, so that the block is done wholly.
+
+    None comes to a thread beside the main one.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
     came: list[int] = []
     before = {number: signal.getsignal(number) for number in LEAVING}
     _handle(lambda number, frame: came.append(number))  # noqa: ARG005

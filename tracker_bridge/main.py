@@ -7,8 +7,11 @@ import sys
 from importlib import import_module
 
 from swarm.checkup.finding import require_good
+from swarm.config.arguments import place
 from swarm.errors import guarded
 from swarm.extras import naming_extras
+from swarm.messages import topics
+from swarm.runtime.clock_report import report_clock
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.process import (
     OneLineParser,
@@ -63,6 +66,8 @@ def run(arguments: argparse.Namespace) -> None:
         plausibility = Plausibility(PlausibilitySettings(arena.width_m, arena.height_m))
         robots = [robot.id for robot in experiment.robot]
         bridge = Bridge(backend, plausibility, node, robots, experiment.pose_lateness_s, arguments.speed)
+        if not arguments.supervised:
+            report_clock(node, topics.TRACKER_EVENT)
         node.run(bridge.step)
 
 
@@ -75,4 +80,7 @@ def _parser() -> OneLineParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add_common_arguments(parser)
+    parser.add_argument(
+        "--state", type=place, metavar="DIR", help="where events are kept that a server may have missed"
+    )
     return parser

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections import Counter
 from dataclasses import dataclass
 
@@ -10,7 +9,7 @@ from robot_agent.drivers.interfaces import Camera
 from robot_agent.imitation.positions import ObservedPosition, position_from_detection
 from robot_agent.navigation.pose_estimator import PoseAt
 from robot_agent.vision.detector import Detection, Detector, NotSeen, Reason
-from robot_agent.vision.frames import Frame
+from robot_agent.vision.frames import Frame, frame_hash
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose, wrap_angle_rad
 
@@ -114,14 +113,14 @@ class Watch:
                 self.failed = f"the camera stalled: no frame for {self._missing} periods"
             return
         self._missing = 0
-        frame_hash = int.from_bytes(hashlib.blake2b(frame.data, digest_size=8).digest(), "little")
-        self._repeated = self._repeated + 1 if self.looks and self.looks[-1].frame_hash == frame_hash else 0
+        seen_hash = frame_hash(frame)
+        self._repeated = self._repeated + 1 if self.looks and self.looks[-1].frame_hash == seen_hash else 0
         if self._repeated >= MOST_REPEATED_FRAMES:
             self.failed = f"the camera is frozen: {self._repeated + 1} equal frames"
             return
-        self._look(frame, frame_hash, exposed_from)
+        self._look(frame, seen_hash, exposed_from)
 
-    def _look(self, frame: Frame, frame_hash: int, own_pose: Pose) -> None:
+    def _look(self, frame: Frame, seen_hash: int, own_pose: Pose) -> None:
         """A frame comes late: what it shows is put where the robot was when it was exposed."""
         from_rad, self._looked_from_rad = self._looked_from_rad, own_pose.theta_rad
         turned_rad = None if from_rad is None else wrap_angle_rad(own_pose.theta_rad - from_rad)
@@ -141,7 +140,7 @@ class Watch:
                 answer.bearing_sd_rad,
                 frame.t_ns,
             )
-        self.looks.append(ObservedFrame(frame.t_ns, frame_hash, answer, position))
+        self.looks.append(ObservedFrame(frame.t_ns, seen_hash, answer, position))
 
     def _turn_rad_per_s(self, own_pose: Pose) -> float:
         if self._towards_rad is None or self.failed:

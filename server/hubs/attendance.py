@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages.topics import EARLIER
 from swarm.runtime.liveliness import Presence, parsed
 from swarm.runtime.zenoh_session import PresenceWatch
 
@@ -57,6 +58,8 @@ class Attendance:
         self._dismissed = True
 
     def _come(self, key: str, presence: Presence) -> None:
+        if presence.kind in EARLIER.values():
+            self._admits(presence)
         if presence.kind not in TAKING_PART:
             return
         name = _name(presence)
@@ -69,9 +72,11 @@ class Attendance:
 
     def _wait(self, name: str, key: str, presence: Presence) -> None:
         there = self._present[name]
-        if len(there) < MOST_UNDER_ONE_NAME:
-            first = next(iter(there.values()))
-            there[key] = presence
+        if len(there) >= MOST_UNDER_ONE_NAME:
+            return
+        first, *others = there.values()
+        there[key] = presence
+        if presence.host not in {other.host for other in others}:
             text = f"{name} is there already, on host {first.host}: one on host {presence.host} is left out"
             self._tell("duplicate", text, pb.Event.WARNING)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Protocol, TypeVar
 
 from google.protobuf.message import Message
 
-from swarm.logs.ending import Sender
+from swarm.logs.ending import Receipt, Sender
 from swarm.messages.header import Item
 from swarm.messages.topics import Topic
 
@@ -40,8 +40,15 @@ class Hub(Protocol):
     def finish(self) -> Batch:
         """Tell the processes that the trial is over; what they still had to say."""
 
+    @property
+    def recovered(self) -> Mapping[Sender, int]:
+        """How many messages of each sender had been lost on their way, and came later."""
+
     def accounts(self) -> Mapping[Sender, int] | None:
         """The last number of each key and epoch by its sender's own account; None: all of it was heard."""
+
+    def receipts(self) -> Sequence[Receipt]:
+        """What the robots' processes have received by their own accounts; in lockstep they write it down."""
 
 
 class Batch:

@@ -10,16 +10,16 @@ from collections.abc import Iterable
 from typing import Any
 
 from server.hubs.attendance import Tell
+from swarm.access.zenoh_limits import FASTER
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages.header import Item
 from swarm.messages.topics import Topic
 from swarm.runtime.zenoh_session import Session, WireSample
 
-ALLOWED_PER_S = 200.0
-"""Twenty times the highest declared rate; events and moves come once a second at most."""
-AT_ONCE = 2000.0
-"""Seconds' worth after a gap in the radio, or a start that tells of many paths."""
-ROOM_BYTES = 8 << 20
-"""What waits under one key between two looks at most: 8,000 short messages, or 127 of the longest."""
+UNRATED_PER_S = 20.0
+"""Of what comes as it happens: a robot makes a move or two a second."""
+AT_ONCE = 1000
+"""After a gap in the radio, or at a start that tells of many paths; a robot keeps less for a server."""
 TOLD_EVERY_S = 10.0
 
 
@@ -31,28 +31,34 @@ class LimitedInbox:
 
     def __init__(self, session: Session, topic: Topic[Any], robot: str, speed: float, tell: Tell) -> None:
         self.key = topic.key(robot)
-        self._inbox = session.inbox_of_others(self.key, ROOM_BYTES // topic.largest_bytes)
-        self._per_s = ALLOWED_PER_S * speed
-        self._allowed = AT_ONCE
+        listen = session.recovering_inbox if topic.is_recovered else session.inbox_of_others
+        self._most = topic.most_waiting
+        self._inbox = listen(self.key, self._most)
+        self._at_once = min(AT_ONCE, self._most)
+        self._per_s = (FASTER * topic.rate_hz if topic.rate_hz else UNRATED_PER_S) * speed
+        self._allowed = float(self._at_once)
         self._tell = tell
         self._looked_s: float | None = None
         self._told_s = 0.0
         self._untold = 0
         self.left_out = 0
 
-    def poll(self, now_s: float) -> list[WireSample]:
-        """What has arrived since the last look and is not too much, in order; `now_s` never goes back."""
+    def poll(self) -> list[WireSample]:
+        """What has arrived since the last look, in order."""
+        return self._inbox.poll(self._most)
+
+    def limited(self, items: list[Item], now_s: float) -> list[Item]:
+        """Of what is its sender's own, what is not too much; `now_s` never goes back."""
         self._allow(now_s)
-        samples = self._inbox.poll()
-        taken = samples[: int(self._allowed)]
+        taken = items[: int(self._allowed)]
         self._allowed -= len(taken)
-        self._leave_out(len(samples) - len(taken), now_s)
+        self._leave_out(len(items) - len(taken), now_s)
         return taken
 
     def _allow(self, now_s: float) -> None:
         elapsed_s = now_s - self._looked_s if self._looked_s is not None else 0.0
         self._looked_s = now_s
-        self._allowed = min(AT_ONCE, self._allowed + elapsed_s * self._per_s)
+        self._allowed = min(self._at_once, self._allowed + elapsed_s * self._per_s)
 
     def _leave_out(self, count: int, now_s: float) -> None:
         self.left_out += count

@@ -37,7 +37,7 @@ def run_table(
     """The tracker bridge, the emulator if robots are `emulated` (addresses by id), and the robots divided
     over the experiment's number of processes.
 
-    The processes of robots leave a list of all keys that they received (`output`/PROCESS.keys).
+    The processes of robots leave an account of all that they received (`output`/PROCESS.keys).
     """
     run = experiment.run
     changed = ("--seed", str(run.seed), "--moves", str(run.moves), "--trial", str(trial), "--supervised")

@@ -24,7 +24,6 @@ from swarm.messages import topics
 from swarm.messages.topics import Topic
 from swarm.runtime.subscription import Subscription, Subscriptions
 
-ARENA, ROBOTS, LOG = "view/arena", "view/robots", "view/log"
 FRAME = "arena"
 ROBOTS_PERIOD_NS = NS_PER_S
 """Enough for the eye, and a small part of the log: the poses themselves are in it at their full rate."""
@@ -52,13 +51,16 @@ class Views:
         """Topic and message of every view that the batch calls for."""
         self._subscriptions.put(batch.items)
         if self._due_ns is None:
-            yield ARENA, self._arena(batch.t_ns)
+            yield topics.VIEW_ARENA, self._arena(batch.t_ns)
         if self._due_ns is None or batch.t_ns >= self._due_ns:
             self._due_ns = batch.t_ns + ROBOTS_PERIOD_NS
-            yield ROBOTS, self._robots(batch.t_ns)
+            yield topics.VIEW_ROBOTS, self._robots(batch.t_ns)
         for topic, events in self._events.items():
             for received in events.take():
-                yield LOG, _log_line(received.robot or topic.pattern, received.message, batch.t_ns)
+                yield (
+                    topics.VIEW_LOG,
+                    _log_line(received.robot or topic.pattern, received.message, batch.t_ns),
+                )
 
     def _robots(self, t_ns: int) -> PosesInFrame:
         for received in self._poses.take():

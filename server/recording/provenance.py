@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -14,9 +15,15 @@ PACKAGES = ("swarm-runtime", "eclipse-zenoh", "numpy", "protobuf", "mcap")
 
 
 def metadata(
-    experiment: Experiment, file: Path, identity: RunIdentity, versions: dict[str, str], part: int = 1
+    experiment: Experiment,
+    file: Path,
+    changes: Sequence[str],
+    identity: RunIdentity,
+    versions: dict[str, str],
+    part: int = 1,
 ) -> dict[str, dict[str, str]]:
-    """The metadata records of a trial's log; `versions` are those at the run's beginning.
+    """The metadata records of a trial's log; `versions` are those at the run's beginning, and `changes` what
+    `--set` said in place of values of the experiment, whose file has them.
 
     A run that others can join also says its id and fingerprint, and the log of a server that went on with a
     trial which of the trial's logs it is.
@@ -24,8 +31,9 @@ def metadata(
     run = experiment.run
     joinable = {"id": identity.run_id, "identity": str(identity.fingerprint)} if identity.run_id else {}
     later = {"part": str(part)} if part > 1 else {}
+    changed = {"set": "\n".join(changes)} if changes else {}
     return {
-        "experiment": {"toml": file.read_text(encoding="utf-8")},
+        "experiment": {"toml": file.read_text(encoding="utf-8"), **changed},
         "run": {
             "name": run.name,
             "seed": str(run.seed),

@@ -26,7 +26,8 @@ from swarm.access.authority import Authority, Signed, common_name, hosts_of, val
 from swarm.access.credentials import ACCESS_FILE, AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE, tls
 from swarm.access.identities import SERVER, Identity, identities
 from swarm.access.rights import rights_of
-from swarm.access.zenoh_rules import access_control, limits
+from swarm.access.zenoh_limits import limits
+from swarm.access.zenoh_rules import access_control
 from swarm.config.laboratory import Laboratory
 from swarm.errors import UserError, nearest
 from swarm.files import make_folder, write_json, write_whole
@@ -62,14 +63,15 @@ class Keyring:
     def update(self, renew: Collection[str], revoke: Collection[str], now: datetime) -> list[Issued]:
         """Make what is missing, renew and revoke what is named, and write the rules anew.
 
-        "all" renews the authority too: then nobody with an older certificate is spoken with at all.
+        "all" renews the authority too: then nobody with an older certificate is spoken with at all. Whoever
+        was revoked stays so.
         """
         self._check_names(renew, revoke)
-        if ALL in renew:
-            renew = {ALL, *map(str, self._identities)}
         make_folder(self._folder)
         self._folder.chmod(0o700)
         revoked = (self._revoked() | set(revoke)) - set(renew)
+        if ALL in renew:
+            renew = {ALL, *map(str, self._identities)}
         authority = self._authority(ALL in renew, now)
         issued = [self._issue(one, authority, renew, revoked, now) for one in self._identities]
         write_json(sorted(revoked), self._folder / REVOKED_FILE)

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from swarm.access.rights import Act, Right
-from swarm.messages.topics import LONG_BYTES, SHORT_BYTES, TABLE
+from swarm.access.rights import Act, Right, presence_of
+from swarm.messages.topics import ASKED_BY, TABLE, Role
 
 _MESSAGES: Mapping[Act, Mapping[str, tuple[str, ...]]] = {
     # A publisher sends only what it has been told that somebody hears.
@@ -18,19 +18,13 @@ _MESSAGES: Mapping[Act, Mapping[str, tuple[str, ...]]] = {
     Act.HEAR: {"ingress": ("declare_subscriber",), "egress": ("put",)},
     Act.ASK: {"ingress": ("query",), "egress": ("reply", "declare_queryable")},
     Act.ANSWER: {"ingress": ("declare_queryable", "reply"), "egress": ("query",)},
+    Act.REPEAT: {"ingress": ("reply",)},
     Act.SHOW: {"ingress": ("liveliness_token",)},
     Act.SEE: {
         "ingress": ("liveliness_query", "declare_liveliness_subscriber"),
         "egress": ("liveliness_token",),
     },
 }
-FASTER = 20.0
-"""Times the declared rate: a key's messages may come close together after a gap in the radio."""
-ACCEPT_MS = 2_000
-"""Who has connected and says nothing keeps nobody out for longer. A handshake takes some tenths of a
-second on a board (10 s is Zenoh's default, with room for 100 who wait)."""
-LARGEST_MESSAGE_BYTES = 2 << 20
-"""What a hub puts together before anybody can refuse it: twice the answer of what a run's settings are."""
 
 
 def access_control(granted: Mapping[str, tuple[str, Iterable[Right]]]) -> dict[str, Any]:
@@ -55,33 +49,25 @@ def access_control(granted: Mapping[str, tuple[str, Iterable[Right]]]) -> dict[s
     }
 
 
-def limits(robots: Sequence[str]) -> dict[str, Any]:
-    """Settings of a hub by their place in Zenoh's configuration: how large messages may be, and how many.
+def nobody_else_is_the_server() -> dict[str, Any]:
+    """Zenoh's `access_control` of a hub without certificates: everything, but to speak as the server does.
 
-    They hold with and without certificates. A rate is limited only where the newest counts: of what must not
-    be lost Zenoh would drop the second of two that come together.
+    The server and the hub are one process there, so that nothing of the server's comes over a connection.
     """
+    said = [topic.key() for topic in TABLE if topic.sender is Role.SERVER]
+    rules = [
+        _denied("say", ("put",), said),
+        _denied("delete", ("delete",), ["**"]),
+        _denied("answer", ("declare_queryable", "reply"), list(ASKED_BY)),
+        _denied("be present", ("liveliness_token",), [presence_of("server", "*")]),
+        _denied("administrate", ("put", "query", "declare_subscriber"), ["@/**"]),
+    ]
     return {
-        "transport/link/rx/max_message_size": LARGEST_MESSAGE_BYTES,
-        "transport/unicast/accept_timeout": ACCEPT_MS,
-        "adminspace/enabled": False,
-        "low_pass_filter": [
-            _at_most("long", ["**"], LONG_BYTES),
-            _at_most("short", [t.key() for t in TABLE if t.largest_bytes == SHORT_BYTES], SHORT_BYTES),
-        ],
-        "downsampling": [
-            {
-                "id": "rates",
-                "flows": ["ingress"],
-                "messages": ["put"],
-                "rules": [
-                    {"key_expr": topic.key(robot), "freq": FASTER * topic.rate_hz}
-                    for topic in TABLE
-                    if topic.rate_hz
-                    for robot in (robots if "{robot}" in topic.pattern else ("",))
-                ],
-            }
-        ],
+        "enabled": True,
+        "default_permission": "allow",
+        "rules": rules,
+        "subjects": [{"id": "anybody"}],
+        "policies": [{"subjects": ["anybody"], "rules": [rule["id"] for rule in rules]}],
     }
 
 
@@ -99,11 +85,11 @@ def _rules(name: str, rights: Sequence[Right]) -> list[dict[str, Any]]:
     ]
 
 
-def _at_most(name: str, keys: list[str], size: int) -> dict[str, Any]:
+def _denied(name: str, messages: Sequence[str], keys: list[str]) -> dict[str, Any]:
     return {
         "id": name,
+        "permission": "deny",
         "flows": ["ingress"],
-        "messages": ["put", "delete", "query"],
+        "messages": list(messages),
         "key_exprs": keys,
-        "size_limit": size,
     }

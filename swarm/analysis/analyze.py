@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import polars as pl
@@ -14,14 +15,18 @@ from swarm.analysis.copying.figures import copying_figures
 from swarm.analysis.copying.paths import path_table
 from swarm.analysis.copying.summary import Copying, read_copying
 from swarm.analysis.inputs import Inputs, default_out, find_inputs
-from swarm.analysis.learning_curves import RunCurves, curve_table, run_curves, trial_table
+from swarm.analysis.learning_curves import curve_table, run_curves, trial_table
+from swarm.analysis.page.contents import Origin, page_contents
+from swarm.analysis.page.document import write_page
+from swarm.analysis.page.verification import Verification, compared, runs_of
 from swarm.analysis.plots import plot_curves
 from swarm.analysis.report import report
 from swarm.analysis.results_directory import AnalysisDirectory
 from swarm.analysis.summary import Summary
-from swarm.files import printable, write_json, write_png, write_table, write_text
+from swarm.files import printable, write_json, write_png, write_text
 from swarm.logs.identity import LogIdentity
 from swarm.logs.parquet import LogContent, Reading, read_logs
+from swarm.table_files import write_table
 
 _DAMAGE_SHOWN = 3
 """Of a log: enough to see what is wrong with it."""
@@ -37,6 +42,8 @@ class Request:
     """Also tables of poses, commands and truths, which are nearly all of a log."""
     threshold: int = 12
     """Moves: a third above the shortest path of the paper's arena, 9."""
+    html: bool = False
+    """Also one page to hand round."""
 
 
 @dataclass(frozen=True)
@@ -57,21 +64,41 @@ def analyze(request: Request, show: Callable[[int], object] = lambda _: None) ->
     out = request.out or default_out(request.runs)
     inputs = find_inputs(request.runs)
     directory = AnalysisDirectory.open(out, inputs)
+    directory.tables.mkdir(exist_ok=True)
     reading = read_logs(inputs.logs, directory.tables, request.sampled, show)
-    best_paths = pl.read_parquet(reading.tables["best_paths"], glob=False)
-    curves = run_curves(best_paths, inputs.shortest_moves)
-    notes = [*inputs.notes, *_reading_notes(inputs, reading), *curves.notes]
-    copying = read_copying(reading.tables, {log.trial_log: log.cell_m for log in inputs.logs})
-    summary = Summary(_title(inputs), reading, curves, compare_all(curves), request.threshold, notes, copying)
-    files = _write(directory, curves, summary)
+    summary = _summary(inputs, reading, request.threshold)
+    files = _write(directory, summary)
+    if request.html:
+        page = page_contents(summary, reading.tables, Origin(request.runs, inputs, directory.path))
+        files["report.html"] = write_page(page, directory.path / "report.html")
     analysis = Analysis(summary, directory.path, files | reading.tables)
     write_json(analysis.as_json(), directory.path / "summary.json")
     return analysis
 
 
-def _write(directory: AnalysisDirectory, curves: RunCurves, summary: Summary) -> dict[str, Path]:
+def verify(page: Path, runs: Sequence[Path] = ()) -> Verification:
+    """Make every number of a page of `analyze` once more from its logs; `runs`: where these are by now."""
+    contents, places = runs_of(page, runs)
+    inputs = find_inputs(places)
+    with TemporaryDirectory(prefix="swarm-verify-") as folder:
+        reading = read_logs(inputs.logs, Path(folder), False, lambda _: None)
+        summary = _summary(inputs, reading, int(contents["threshold"]))
+        again = page_contents(summary, reading.tables, Origin(places, inputs, page.parent))
+    return compared(page, contents, again)
+
+
+def _summary(inputs: Inputs, reading: Reading, threshold: int) -> Summary:
+    best_paths = pl.read_parquet(reading.tables["best_paths"], glob=False)
+    curves = run_curves(best_paths, inputs.shortest_moves)
+    notes = [*inputs.notes, *_reading_notes(inputs, reading), *curves.notes]
+    copying = read_copying(reading.tables, {log.trial_log: log.cell_m for log in inputs.logs})
+    return Summary(_title(inputs), reading, curves, compare_all(curves), threshold, notes, copying)
+
+
+def _write(directory: AnalysisDirectory, summary: Summary) -> dict[str, Path]:
+    curves = summary.curves
     tables = {"curves": curve_table(curves.curves), "trials": trial_table(curves)}
-    drawn = _write_figures(directory, curves, summary)
+    drawn = _write_figures(directory, summary)
     return {
         **drawn,
         **{
@@ -84,10 +111,10 @@ def _write(directory: AnalysisDirectory, curves: RunCurves, summary: Summary) ->
     }
 
 
-def _write_figures(directory: AnalysisDirectory, curves: RunCurves, summary: Summary) -> dict[str, Path]:
-    figures = {"curves.png": plot_curves(curves, summary.title)}
+def _write_figures(directory: AnalysisDirectory, summary: Summary) -> dict[str, Path]:
+    figures = {"curves.png": plot_curves(summary.curves, summary.title)}
     if summary.copying:
-        figures["curves_paper_axes.png"] = plot_curves(curves, summary.title, paper_axes=True)
+        figures["curves_paper_axes.png"] = plot_curves(summary.curves, summary.title, paper_axes=True)
     figures |= copying_figures(summary.copying)
     return {name: write_png(figure, directory.path / name) for name, figure in figures.items()}
 

@@ -39,7 +39,9 @@ class Comparison:
     windows: list[Window]
     """Where the paper's pointwise t-test finds a difference at 5 %."""
     family_wise_windows: list[Window]
-    """Where a difference remains when all points are tested together (max-T sign flips)."""
+    """Where a difference remains when all points are tested together (max-T sign flips), and with them all
+    pairs of curves that are compared with each other.
+    """
 
 
 @dataclass(frozen=True)
@@ -56,18 +58,20 @@ def compare_all(found: RunCurves) -> list[Comparison | NoComparison]:
     return [compare(first, second) for first, second in combinations(found.curves.values(), 2)]
 
 
-def compare(first: Curves, second: Curves) -> Comparison | NoComparison:
-    """Both are cut to the moves that they have in common first."""
+def compare(first: Curves, second: Curves, together: int = 1) -> Comparison | NoComparison:
+    """Both are cut to the moves that they have in common first; `together` pairs share the level of the
+    family-wise windows (Bonferroni).
+    """
     end = min(first.times[-1], second.times[-1])
     start = max(first.times[0], second.times[0])
     one, other = first.between(start, end), second.between(start, end)
     try:
-        return _compared(one, other)
+        return _compared(one, other, LEVEL / together)
     except PairingError as error:
         return NoComparison(first.name, second.name, str(error))
 
 
-def _compared(one: Curves, other: Curves) -> Comparison:
+def _compared(one: Curves, other: Curves, level: float) -> Comparison:
     level_one, level_other = mean_level(one), mean_level(other)
     pointwise = pointwise_t_test(one, other)
     together = max_t_test(one, other, np.random.default_rng(SIGN_FLIP_SEED))
@@ -79,7 +83,7 @@ def _compared(one: Curves, other: Curves) -> Comparison:
         effect=paired_effect_size(level_one, level_other),
         p=paired_t_test(level_one, level_other).p,
         windows=_windows(pointwise.p <= LEVEL, one),
-        family_wise_windows=_windows(together.p <= LEVEL, one),
+        family_wise_windows=_windows(together.p <= level, one),
     )
 
 

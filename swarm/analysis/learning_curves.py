@@ -7,14 +7,17 @@ was left out, is said in `notes`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 import polars as pl
 
 from swarm.errors import UserError
+from swarm.logs.identity import LogIdentity
+from swarm.logs.parquet import read_logs
 from swarm.statistics.intervals import interval
 from swarm.statistics.samples import Curves, FloatArray, Scale
 
@@ -48,6 +51,13 @@ def run_curves(best_paths: pl.DataFrame, shortest_moves: int) -> RunCurves:
         for (condition,), rows in sorted(points.group_by("condition"), key=lambda item: str(item[0]))
     }
     return RunCurves(curves, cap, notes)
+
+
+def read_curves(logs: Sequence[LogIdentity], folder: Path) -> RunCurves:
+    """Of logs, which leave their tables in the folder."""
+    tables = read_logs(logs, folder, False, lambda _: None).tables
+    shortest_moves = min(log.shortest_moves for log in logs)
+    return run_curves(pl.read_parquet(tables["best_paths"], glob=False), shortest_moves)
 
 
 def curve_table(found: Mapping[str, Curves]) -> pl.DataFrame:

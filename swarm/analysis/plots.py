@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from textwrap import fill
+
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
@@ -13,13 +16,18 @@ from swarm.statistics.samples import Curves
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 """Told apart by colour-blind readers too (Okabe and Ito)."""
+LINES = ("-", "--", ":", "-.")
+"""Where there are more curves than colours."""
 GREY = "#595959"
 DRAWN_POINTS = 1500
 """More than a picture has pixels for."""
 BOLD_POINTS = 300
 """A curve of more is too ragged for a bold line."""
 LEGEND_COLUMNS = 3
-"""So many names fit the width of the picture."""
+LEGEND_SIGNS = 96
+"""So many names, or so many letters of names, fit the width of the picture."""
+NOTE_SIGNS = 118
+"""So many letters of the note below fit the width."""
 POINT_MOVES = 10
 """A robot finds out its best path every so many moves."""
 
@@ -33,26 +41,28 @@ def plot_curves(found: RunCurves, title: str, paper_axes: bool = False) -> Figur
     axes = figure.add_subplot()
     axes.axhline(found.cap, color=GREY, linewidth=0.8, linestyle=(0, (1, 3)))
     for place, curves in enumerate(found.curves.values()):
-        _draw(axes, curves, COLOURS[place % len(COLOURS)])
+        _draw(axes, curves, COLOURS[place % len(COLOURS)], LINES[place // len(COLOURS) % len(LINES)])
     _scale(axes, found)
     if paper_axes:
         axes.set_ylim(0, found.cap * 1.04)
         axes.xaxis.set_major_formatter(lambda moves, _: f"{moves / POINT_MOVES:,.0f}")
-    _explain(axes, len(found.curves), title)
+    _explain(axes, found.curves, title)
     if paper_axes:
         axes.set_xlabel("data points (ten state transitions each)", fontsize=10)
         axes.set_ylabel("best path length", fontsize=10)
-    figure.supxlabel(_note(found), x=0.01, ha="left", fontsize=8.5, color=GREY)
+    figure.supxlabel(fill(_note(found), NOTE_SIGNS), x=0.01, ha="left", fontsize=8.5, color=GREY)
     return figure
 
 
-def _draw(axes: Axes, curves: Curves, colour: str) -> None:
+def _draw(axes: Axes, curves: Curves, colour: str, line: str) -> None:
     drawn = curves.every(max(1, len(curves.times) // DRAWN_POINTS))
     draw_band(axes, drawn, colour)
     trials = len(drawn.values)
     label = f"{curves.name}  ({trials} {'trial' if trials == 1 else 'trials'})"
     width = 1.8 if len(drawn.times) <= BOLD_POINTS else 1.0
-    axes.plot(drawn.times, drawn.values.mean(axis=0), color=colour, linewidth=width, label=label)
+    axes.plot(
+        drawn.times, drawn.values.mean(axis=0), color=colour, linewidth=width, linestyle=line, label=label
+    )
 
 
 def _scale(axes: Axes, found: RunCurves) -> None:
@@ -67,12 +77,13 @@ def _scale(axes: Axes, found: RunCurves) -> None:
     axes.tick_params(labelsize=9, color=GREY)
 
 
-def _explain(axes: Axes, conditions: int, title: str) -> None:
+def _explain(axes: Axes, conditions: Collection[str], title: str) -> None:
     """Axis labels, and a legend in rows between the title and the curves, where it hides none of them."""
     axes.set_xlabel("moves made by the learner", fontsize=10)
     axes.set_ylabel("best path length (moves)", fontsize=10)
-    columns = min(conditions, LEGEND_COLUMNS)
-    rows = -(-conditions // columns)
+    longest = max(map(len, conditions)) + len("  (100 trials)")
+    columns = max(1, min(len(conditions), LEGEND_COLUMNS, LEGEND_SIGNS // longest))
+    rows = -(-len(conditions) // columns)
     axes.legend(
         frameon=False,
         fontsize=10,

@@ -36,13 +36,11 @@ class AnalysisDirectory:
             path.mkdir(parents=True, exist_ok=True)
             if any(path.iterdir()):
                 _refuse_another(path, record)
-            directory = cls(path)
-            directory.tables.mkdir(exist_ok=True)
             write_json(record, path / "inputs.json")
         except (OSError, RunFailedError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise UserError(f"{path}: results cannot be written there ({reason}); {CURE}") from error
-        return directory
+        return cls(path)
 
     @property
     def tables(self) -> Path:

@@ -35,6 +35,9 @@ def analyze_command(
     threshold: Annotated[
         int, typer.Option(min=1, help="The path length, in moves, that counts as a good path.")
     ] = 12,
+    html: Annotated[
+        bool, typer.Option("--html", help="Also report.html: one file to hand round, for any browser.")
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print the results as one JSON object.")] = False,
 ) -> None:
     """Turn logs into tables (Parquet), learning curves (PNG, CSV, Parquet) and a report (Markdown).
@@ -45,7 +48,7 @@ def analyze_command(
     from swarm.analysis.analyze import Request, analyze
 
     with _progress() as show:
-        analysis = analyze(Request(run, out, samples, threshold), show)
+        analysis = analyze(Request(run, out, samples, threshold, html), show)
     if json:
         print_json(analysis.as_json())
     else:
@@ -71,7 +74,9 @@ def print_analysis(analysis: Analysis) -> None:
         console.print(sentence(found).replace("**", ""), markup=False)
     for note in summary.notes:
         console.print(f"note: {note}", markup=False)
-    for name in ("report.md", "curves.png"):
+    for name in ("report.md", "curves.png", "report.html"):
+        if name not in analysis.files:
+            continue
         console.print(f"wrote {analysis.files[name]}", markup=False, soft_wrap=True)
 
 

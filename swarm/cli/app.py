@@ -10,19 +10,26 @@ import typer
 from swarm.cli.analyze import analyze_command
 from swarm.cli.check import check_command
 from swarm.cli.claims import claims_command
+from swarm.cli.compare import compare_command
+from swarm.cli.console import console_command
 from swarm.cli.deploy import deploy_command
 from swarm.cli.doctor import doctor_command
 from swarm.cli.durations import durations_command
 from swarm.cli.export import export_command
+from swarm.cli.film import film_command
 from swarm.cli.info import info_command
 from swarm.cli.lab import lab_app
 from swarm.cli.orders import done_command, estop_command, pause_command, resume_command, stop_command
 from swarm.cli.recover import recover_command
 from swarm.cli.replay import replay_command
 from swarm.cli.reproduce import reproduce_command
+from swarm.cli.run import run_command
+from swarm.cli.runs import runs_command
 from swarm.cli.simulate import simulate_command
 from swarm.cli.status import status_command
 from swarm.cli.trials import trials_command
+from swarm.cli.verify import verify_command
+from swarm.cli.watch import watch_command
 from swarm.errors import UserError
 from swarm.version import version_text
 
@@ -53,6 +60,7 @@ def _root(
 
 app.command("doctor")(doctor_command)
 app.command("simulate")(simulate_command)
+app.command("run")(run_command)
 app.command("status")(status_command)
 app.command("pause")(pause_command)
 app.command("resume")(resume_command)
@@ -62,9 +70,15 @@ app.command("done")(done_command)
 app.command("reproduce")(reproduce_command)
 app.command("claims")(claims_command)
 app.command("analyze")(analyze_command)
+app.command("verify")(verify_command)
+app.command("film")(film_command)
+app.command("runs")(runs_command)
+app.command("compare")(compare_command)
 app.command("trials")(trials_command)
 app.command("durations")(durations_command)
 app.command("info")(info_command)
+app.command("console")(console_command)
+app.command("watch")(watch_command)
 app.command("check")(check_command)
 app.command("recover")(recover_command)
 app.command("replay")(replay_command)

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from swarm.cli.output import print_json
-from swarm.cli.reproduce import Jobs, Json, Out, Runs, Scheduler, Seed, Steps, told_when_interrupted
+from swarm.cli.reproduce import Jobs, Json, Out, Runs, Seed, Steps, told_when_interrupted
+from swarm.cli.values import Scheduler
 from swarm.config.limits import MOST_TRIALS
 from swarm.extras import require_extra
 from swarm.parallel import available_cores

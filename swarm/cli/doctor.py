@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from swarm.cli.output import print_findings, print_json
-from swarm.cli.values import good_place
+from swarm.cli.values import Changes, good_place
 
 
 def doctor_command(
@@ -19,6 +19,7 @@ def doctor_command(
             help="Where the run would go.", show_default="runs/NAME-001 and so on", callback=good_place
         ),
     ] = None,
+    changes: Changes = None,
     json: Annotated[bool, typer.Option("--json", help="Print the findings as one JSON object.")] = False,
 ) -> None:
     """Look at an experiment, its files and this machine, as every command does before it starts.
@@ -30,7 +31,7 @@ def doctor_command(
     from swarm.checkup.finding import any_bad
     from swarm.config.experiment import Experiment
 
-    found = findings(Experiment.load(experiment), out)
+    found = findings(Experiment.load(experiment, changes), out)
     if json:
         print_json({"experiment": str(experiment), "findings": [finding.as_json() for finding in found]})
     else:

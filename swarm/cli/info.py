@@ -44,6 +44,8 @@ def _print(info: LogInfo) -> None:
     )
     if info.run:
         typer.echo(f"  run {info.run['name']}, seed {info.run['seed']}, trial {info.run['trial']}")
+        for change in info.run["set"]:
+            typer.echo(f"  set {change}")
     if info.trial_ended:
         typer.echo(f"  the trial was {info.trial_ended['state']} {info.trial_ended['reason']}".rstrip())
     for reason in info.damage:

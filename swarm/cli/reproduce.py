@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from swarm.cli.output import print_json
-from swarm.cli.values import good_place
+from swarm.cli.values import Scheduler, good_place
 from swarm.errors import UserError
 from swarm.extras import require_extra
 from swarm.parallel import available_cores
@@ -31,10 +31,6 @@ Out = Annotated[
     ),
 ]
 Jobs = Annotated[int | None, typer.Option(help="Runs at a time.", show_default="the number of cores")]
-Scheduler = Annotated[
-    str,
-    typer.Option(help="processes, dask (a local cluster), or a Dask scheduler's address tcp://HOST:PORT."),
-]
 Json = Annotated[bool, typer.Option("--json", help="Print the results as one JSON object.")]
 
 

@@ -6,7 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from swarm.cli.output import print_json
-from swarm.cli.steering import At, Credentials, Json, steering
+from swarm.cli.steering import At, Insecure, Json, Keys, steering
 from swarm.extras import require_extra
 from swarm.runtime.endpoint import DEFAULT_ENDPOINT
 
@@ -17,7 +17,9 @@ LOOK_EVERY_S = 0.5
 """A person sees twice a second what robots tell of themselves once."""
 
 
-def status_command(at: At = DEFAULT_ENDPOINT, zenoh_config: Credentials = None, json: Json = False) -> None:
+def status_command(
+    at: At = DEFAULT_ENDPOINT, keys: Keys = None, insecure: Insecure = False, json: Json = False
+) -> None:
     """Show how a live run goes: live on a terminal until Ctrl-C or the run's end, else once."""
     require_extra("lab", "rich")
     from rich.console import Console
@@ -25,7 +27,7 @@ def status_command(at: At = DEFAULT_ENDPOINT, zenoh_config: Credentials = None, 
     from swarm.control.status_table import status_table
     from swarm.runtime.operating import ask_status, status_as_json
 
-    with steering(at, zenoh_config) as session:
+    with steering(at, keys, insecure) as session:
         if json:
             print_json(status_as_json(ask_status(session)))
         elif sys.stdout.isatty():

@@ -10,12 +10,12 @@ import typer
 
 from swarm.cli import section_3
 from swarm.cli.output import print_json
-from swarm.cli.values import good_place
+from swarm.cli.values import Changes, Scheduler, good_place
 from swarm.config.limits import LARGEST_SEED, MOST_JOBS, MOST_MOVES, MOST_TRIALS
 from swarm.errors import UserError
 from swarm.extras import require_extra
 from swarm.files import new_folder
-from swarm.parallel import available_cores
+from swarm.parallel import available_cores, check_scheduler
 
 if TYPE_CHECKING:
     from swarm.config.experiment import Experiment
@@ -40,6 +40,8 @@ def many_trials(
     full: list[Path],
     out: Path,
     jobs: int,
+    scheduler: str,
+    changes: list[str],
 ) -> dict[str, Any]:
     """Run the trials, and write picture and tables into a new directory."""
     require_extra("lab", "scipy", "polars", "matplotlib")
@@ -48,31 +50,28 @@ def many_trials(
     from swarm.surrogate.plots import first_trials, write_picture
     from swarm.surrogate.trials import PAPER_TRIALS, run_trials, summary, write_tables
 
-    experiment = _good_experiment(file, seed, moves)
+    check_scheduler(scheduler)
+    experiment = _good_experiment(file, seed, moves, changes)
     of_full = _curves_of(full) if full else None
     directory = new_folder(out)
-    many = run_trials(experiment, copies or STORED_COPIES, durations or MEASURED_DURATIONS, trials, jobs)
+    stored = copies or STORED_COPIES, durations or MEASURED_DURATIONS
+    many = run_trials(experiment, *stored, trials, jobs, scheduler=scheduler)
     files = write_tables(many, directory) | {"picture": str(directory / "curves.png")}
     note = NOTE.format(cap=experiment.learning.path_length_cap) + (FULL_NOTE if of_full else "")
     few = of_full or first_trials(many.curves, PAPER_TRIALS)
     write_picture(few, many.curves, experiment.run.name, note, directory / "curves.png")
-    return {"experiment": experiment.run.name, "trials": trials, "conditions": summary(many), "files": files}
+    made = {"experiment": experiment.run.name, "set": changes, "trials": trials}
+    return {**made, "conditions": summary(many), "files": files}
 
 
 def _curves_of(runs: list[Path]) -> dict[str, Curves]:
     """The learning curves in the logs of a full simulation."""
-    import polars as pl
-
     from swarm.analysis.inputs import find_inputs
-    from swarm.analysis.learning_curves import run_curves
-    from swarm.logs.parquet import read_logs
+    from swarm.analysis.learning_curves import read_curves
 
     require_extra("lab", "mcap")
     with tempfile.TemporaryDirectory() as folder:
-        logs = find_inputs(runs).logs
-        tables = read_logs(logs, Path(folder), False, lambda _: None).tables
-        shortest_moves = min(log.shortest_moves for log in logs)
-        return run_curves(pl.read_parquet(tables["best_paths"], glob=False), shortest_moves).curves
+        return read_curves(find_inputs(runs).logs, Path(folder)).curves
 
 
 def trials_command(
@@ -122,16 +121,20 @@ def trials_command(
     jobs: Annotated[
         int | None, typer.Option(min=1, max=MOST_JOBS, help="Trials at a time.", show_default="all cores")
     ] = None,
+    scheduler: Scheduler = "processes",
+    changes: Changes = None,
     json: Json = False,
 ) -> None:
     """Run many trials without wheels: the learning of the robots on measured durations and stored copies."""
     out = out or Path("runs") / "trials" / experiment.stem
     count = jobs or len(available_cores())
     if claims or study:
-        result = _section_3(experiment, claims, study, (trials, moves, seed), (copies, durations), out, count)
+        asked = trials, moves, seed, changes or []
+        result = _section_3(experiment, claims, study, asked, (copies, durations), out, count)
         told = section_3.lines(result)
     else:
-        result = many_trials(experiment, trials, moves, seed, copies, durations, full or [], out, count)
+        files = (copies, durations, full or [], out)
+        result = many_trials(experiment, trials, moves, seed, *files, count, scheduler, changes or [])
         told = _lines(result)
     if json:
         print_json(result)
@@ -143,7 +146,7 @@ def _section_3(
     expert: Path,
     claims: Path | None,
     study: Path | None,
-    settings: tuple[int, int | None, int | None],
+    settings: tuple[int, int | None, int | None, list[str]],
     stored: tuple[Path | None, Path | None],
     out: Path,
     jobs: int,
@@ -154,20 +157,20 @@ def _section_3(
 
     if claims and study:
         raise UserError("--claims and --study: give one of them at a time")
-    trials, moves, seed = settings
-    both = [_good_experiment(file, seed, moves) for file in (expert, claims or study) if file]
+    trials, moves, seed, changes = settings
+    both = [_good_experiment(file, seed, moves, changes) for file in (expert, claims or study) if file]
     run = section_3.judged_claims if claims else section_3.studied_errors
     copies, durations = stored[0] or STORED_COPIES, stored[1] or MEASURED_DURATIONS
     asked = section_3.AskedTrials((both[0], both[1]), copies, durations, trials, jobs)
     return run(asked, new_folder(out))
 
 
-def _good_experiment(file: Path, seed: int | None, moves: int | None) -> Experiment:
+def _good_experiment(file: Path, seed: int | None, moves: int | None, changes: list[str]) -> Experiment:
     from swarm.checkup.checkup import experiment_findings
     from swarm.checkup.finding import require_good
     from swarm.config.experiment import Experiment
 
-    experiment = Experiment.load(file).changed(seed=seed, moves=moves)
+    experiment = Experiment.load(file, changes).changed(seed=seed, moves=moves)
     require_good(file, experiment_findings(experiment))
     return experiment
 

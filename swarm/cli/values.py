@@ -5,10 +5,21 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
 from swarm.config import arguments
+from swarm.config.changes import SET_HELP
+
+Changes = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="TABLE.KEY=VALUE", help=f"{SET_HELP}. May be repeated."),
+]
+Scheduler = Annotated[
+    str,
+    typer.Option(help="processes, dask (a local cluster), or a Dask scheduler's address tcp://HOST:PORT."),
+]
 
 
 def checked(read: Callable[[str], object]) -> Callable[[str | None], str | None]:

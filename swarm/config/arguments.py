@@ -7,7 +7,15 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from swarm.config.limits import FASTEST, LARGEST_SEED, LARGEST_TRIAL, MOST_MOVES, MOST_PROCESSES, SLOWEST
+from swarm.config.limits import (
+    FASTEST,
+    LARGEST_SEED,
+    LARGEST_TRIAL,
+    MOST_JOBS,
+    MOST_MOVES,
+    MOST_PROCESSES,
+    SLOWEST,
+)
 
 MAX = "max"
 """As fast as possible, in lockstep."""
@@ -33,6 +41,8 @@ moves = whole_number(1, MOST_MOVES)
 seed = whole_number(0, LARGEST_SEED)
 processes = whole_number(0, MOST_PROCESSES)
 trial = whole_number(0, LARGEST_TRIAL)
+trials = whole_number(1, LARGEST_TRIAL + 1)
+jobs = whole_number(1, MOST_JOBS)
 
 
 def pace(text: str) -> float:

@@ -13,14 +13,27 @@ from swarm.errors import nearest
 if TYPE_CHECKING:
     from swarm.config.experiment import Experiment, RobotSettings
 
+SECONDS_PER_HOUR = 3600
+
 
 def check_consistency(experiment: Experiment, file: ConfigFile) -> None:
     """UserError, with its line in the file, about what no single value shows."""
     check_id(experiment.run.name, ("run", "name"), file)
     if not experiment.learners:
         raise file.error(("robot", 0, "role"), "no robot is a learner: there is nothing to learn or to plot")
+    _check_blackouts(experiment, file)
     for number, robot in enumerate(experiment.robot):
         _check_robot(experiment, number, robot, file)
+
+
+def _check_blackouts(experiment: Experiment, file: ConfigFile) -> None:
+    tracker = experiment.tracker
+    if tracker.blackouts_per_hour * tracker.blackout_s > SECONDS_PER_HOUR:
+        raise file.error(
+            ("tracker", "blackout_s"),
+            f"{tracker.blackouts_per_hour:g} losses an hour of {tracker.blackout_s:g} s each are more than "
+            "the hour: a robot would be seen for hardly a moment; make them fewer or shorter",
+        )
 
 
 def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
@@ -36,6 +49,7 @@ def _check_robot(experiment: Experiment, number: int, robot: RobotSettings, file
     except ValueError as error:
         raise file.error((*where, "paths"), str(error)) from error
     _check_watching(experiment, number, robot, file)
+    _check_access(experiment, number, robot, file)
     _check_place(experiment, number, robot, file)
 
 
@@ -50,6 +64,16 @@ def _check_watching(experiment: Experiment, number: int, robot: RobotSettings, f
     if robot.watches:
         _check_observers_place(experiment, robot, file)
         _check_frames(experiment, file)
+
+
+def _check_access(experiment: Experiment, number: int, robot: RobotSettings, file: ConfigFile) -> None:
+    where = ("robot", number, "accesses")
+    known = [other.id for other in experiment.learners if other.id != robot.id]
+    if robot.accesses and robot not in experiment.learners:
+        raise file.error(where, f"{robot.id!r} is no learner: it has no use for another's internal state")
+    if robot.accesses and robot.accesses not in known:
+        whom = nearest(robot.accesses, known) if known else "there is no other learner"
+        raise file.error(where, f"{robot.id!r} accesses {robot.accesses!r}, which is no learner; {whom}")
 
 
 def _check_observers_place(experiment: Experiment, robot: RobotSettings, file: ConfigFile) -> None:

@@ -1,13 +1,13 @@
 """What an experiment file says: the run, the arena, the rules of learning, the robots.
 
-`Experiment.load` is the one door: it also checks what no single value shows, such as two robots with
-one id or compartments that overlap.
+`Experiment.load` is the one door: it also checks what no single value shows, such as two robots of one id.
 """
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, StrEnum
 from pathlib import Path
@@ -15,6 +15,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from swarm.config.changes import changes_of
 from swarm.config.consistency import check_consistency
 from swarm.config.limits import BEYOND_CORNER_M, LARGEST_SEED, MOST_MOVES, MOST_PROCESSES
 from swarm.config.toml_files import Between, ConfigFile
@@ -27,7 +28,6 @@ from swarm.learning.random import spawned_generator
 
 OLDEST_POSE_S = 0.9
 """A tenth below the second at which a robot stands for want of a newer pose."""
-
 
 REAL_LINKS = ("serial", "wifi", "i2c", "spi")
 """Drivers of real robots; a simulation runs them against emulated ones."""
@@ -65,6 +65,16 @@ class RunSettings:
     """What a robot does that no longer hears the server: wait after the move under way, or stop at once."""
     without_server_s: Annotated[float, Between(2, 3600)] = 5.0
     """Silence after which it does so; the run's state comes once a second, and a lost one stops nobody."""
+
+
+@dataclass(frozen=True)
+class LogSettings:
+    """[log]: when a trial's log goes on in another file, each of which can be read alone."""
+
+    file_mb: Annotated[float, Between(0.1, 1_000_000)] = 256.0
+    """Size of a file in 10^6 bytes: a log of ten robots takes a day or so to fill one."""
+    file_h: Annotated[float, Between(0.01, 10_000)] = 24.0
+    """Hours of the run in one file."""
 
 
 @dataclass(frozen=True)
@@ -151,8 +161,8 @@ class TrackerSettings:
     """How far the system's east is turned, counter-clockwise, from the arena's."""
     rate_hz: Annotated[float, Between(1, 1000)] = 10.0
     """Poses of each robot a second; a robot stands when the last is 1 s old."""
-    noise_m: Annotated[float, Between(0, 0.05)] = 0.001
-    """Standard deviation of x and of y."""
+    noise_m: Annotated[float, Between(0, 0.02)] = 0.001
+    """Standard deviation of x and of y; with more, poses look as if somebody carried the robot."""
     noise_rad: Annotated[float, Between(0, 1)] = 0.0087
     """Standard deviation of the heading."""
     latency_s: Annotated[float, Between(0, 0.5)] = 0.06
@@ -244,6 +254,9 @@ class RobotSettings:
     """Learners of one condition share a curve; the role's name if empty."""
     watches: str = ""
     """The robot whose moves it copies through its camera; none if empty."""
+    accesses: str = ""
+    """The learner whose internal state it may read (section 2.4); none if empty. Nothing else permits more
+    than observation between robots, and `swarm check --firewall` tells of it."""
     skirt: str = "red"
     """The colour of its skirt, by which others see it."""
     paths: tuple[tuple[str, ...], ...] = ()
@@ -274,17 +287,34 @@ class Experiment:
     visits: VisitSettings = field(default_factory=VisitSettings)
     camera: CameraSettings = field(default_factory=CameraSettings)
     simulation: SimulationSettings = field(default_factory=SimulationSettings)
+    log: LogSettings = field(default_factory=LogSettings)
 
     @classmethod
-    def load(cls, path: Path) -> Experiment:
-        """Read and check an experiment file; UserError names the file, the line and the cure."""
-        return cls._of(ConfigFile(path))
+    def load(cls, path: Path, changes: Iterable[str] | None = None) -> Experiment:
+        """Read and check an experiment file, with what `--set` changes in it.
+
+        UserError names the file and line, or the option, and the cure.
+        """
+        return cls._of(ConfigFile(path, changes=changes_of(changes)))
 
     @classmethod
     def of_log(cls, log: str, text: str, learning: Mapping[str, Any]) -> Experiment:
         """The experiment that a log was recorded from, with these values in its [learning]."""
         file = ConfigFile(Path(f"{log} (its experiment)"), text)
         file.values["learning"] = {**file.values.get("learning", {}), **learning}
+        return cls._of(file)
+
+    @classmethod
+    def of_settings(cls, source: str, settings: Mapping[str, str]) -> Experiment:
+        """The experiment whose every setting somebody tells as JSON, by `table.key` or `robot.ID.key`."""
+        file = ConfigFile(Path(source), "")
+        robots: dict[str, dict[str, Any]] = {}
+        for name, text in settings.items():
+            *table, key = name.split(".")
+            of_robot = table[0] == "robot"
+            group = robots.setdefault(table[1], {}) if of_robot else file.values.setdefault(table[0], {})
+            group[key] = json.loads(text)
+        file.values["robot"] = list(robots.values())
         return cls._of(file)
 
     @classmethod
@@ -360,6 +390,10 @@ class Experiment:
     def pose_lateness_s(self) -> float:
         """How old a simulated pose is when it leaves the tracker: it was an exchange on its way there."""
         return self.tracker.latency_s + (self.ticks_per_exchange + 1) * self.simulation.tick_s
+
+    def is_accessed(self, robot: RobotSettings) -> bool:
+        """Whether another may read a robot's internal state."""
+        return any(other.accesses == robot.id for other in self.robot)
 
     @property
     def learners(self) -> tuple[RobotSettings, ...]:

@@ -11,11 +11,13 @@ import re
 import tomllib
 import types
 import typing
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import Any, TypeVar
 
+from swarm.config.changes import Change, Where
 from swarm.errors import UserError, nearest, one_line
 
 S = TypeVar("S")
@@ -32,10 +34,11 @@ class Between:
 class ConfigFile:
     """A TOML file with the places of its keys, for errors that a person can follow.
 
-    `text` is what it says, if that stands somewhere else than in a file.
+    `text` is what it says, if that stands somewhere else than in a file; `changes` are what a command line
+    says in place of some of its values.
     """
 
-    def __init__(self, path: Path, text: str | None = None) -> None:
+    def __init__(self, path: Path, text: str | None = None, changes: Iterable[Change] = ()) -> None:
         self.path = path
         self._lines = (_read(path) if text is None else text).splitlines()
         try:
@@ -44,20 +47,38 @@ class ConfigFile:
             raise UserError(f"{path}: not valid TOML: {one_line(str(error), LONGEST_ERROR)}") from error
         except RecursionError as error:
             raise UserError(f"{path}: not valid TOML: brackets in brackets, too deep to read") from error
+        self._options: dict[Where, str] = {}
+        for change in changes:
+            self._apply(change)
 
-    def error(self, where: tuple[str | int, ...], text: str) -> UserError:
+    def _apply(self, change: Change) -> None:
+        """An option answers for its key, and for a table that the file does not have."""
+        known = set(self.values)
+        where = change.apply(self.values)
+        self._options[where] = change.option
+        if where[0] not in known:
+            self._options[where[:1]] = change.option
+
+    def error(self, where: Where, text: str) -> UserError:
         """An error about the key at a place such as ("robot", 1, "id")."""
         return UserError(f"{self.place(where)}: {one_line(text, LONGEST_ERROR)}")
 
-    def place(self, where: tuple[str | int, ...]) -> str:
-        """File and line of the key at a place."""
-        return f"{self.path}:{self._line_of(where)}"
+    def place(self, where: Where) -> str:
+        """File and line of the key at a place, or the option that gave its value.
+
+        With a key of the file all options are named: it may be right but for one of them.
+        """
+        for changed, option in self._options.items():
+            if where[: len(changed)] == changed:
+                return option
+        others = ", ".join(dict.fromkeys(self._options.values()))
+        return f"{self.path}:{self._line_of(where)}{f' with {others}' if others else ''}"
 
     def settings(self, kind: type[S]) -> S:
         """The whole file as one settings dataclass."""
         return self._table(kind, self.values, ())
 
-    def _table(self, kind: type[S], values: dict[str, Any], where: tuple[str | int, ...]) -> S:
+    def _table(self, kind: type[S], values: dict[str, Any], where: Where) -> S:
         fields = {field.name: field for field in dataclasses.fields(kind)}  # type: ignore[arg-type]
         hints = typing.get_type_hints(kind, include_extras=True)
         for name in values:
@@ -70,7 +91,7 @@ class ConfigFile:
             **{name: self._value(hints[name], value, (*where, name)) for name, value in values.items()}
         )
 
-    def _value(self, hint: Any, value: Any, where: tuple[str | int, ...]) -> Any:
+    def _value(self, hint: Any, value: Any, where: Where) -> Any:
         bounds: Between | None = None
         if typing.get_origin(hint) is typing.Annotated:
             hint, bounds = typing.get_args(hint)
@@ -84,7 +105,7 @@ class ConfigFile:
             return self._sequence(hint, bounds, value, where)
         return self._scalar(hint, bounds, value, where)
 
-    def _sequence(self, hint: Any, bounds: Between | None, value: Any, where: tuple[str | int, ...]) -> Any:
+    def _sequence(self, hint: Any, bounds: Between | None, value: Any, where: Where) -> Any:
         kinds = typing.get_args(hint)
         if not isinstance(value, list):
             raise self.error(where, _no_list(where, kinds[0], value))
@@ -98,7 +119,7 @@ class ConfigFile:
             for i, (kind, entry) in enumerate(zip(hints, value, strict=True))
         )
 
-    def _scalar(self, kind: type, bounds: Between | None, value: Any, where: tuple[str | int, ...]) -> Any:
+    def _scalar(self, kind: type, bounds: Between | None, value: Any, where: Where) -> Any:
         name = _name(where)
         if kind is Path:
             return self._beside(value, where)
@@ -115,16 +136,14 @@ class ConfigFile:
             self._check_number(name, value, bounds, where)
         return value
 
-    def _beside(self, value: Any, where: tuple[str | int, ...]) -> Path:
+    def _beside(self, value: Any, where: Where) -> Path:
         """A file that is named in this one: its path starts at this one's folder."""
         name: str = self._scalar(str, None, value, where)
         if not name or "\0" in name:
             raise self.error(where, f"{_name(where)!r} is {_shown(value)}, which names no file")
         return self.path.parent / name
 
-    def _check_number(
-        self, name: str, value: float, bounds: Between | None, where: tuple[str | int, ...]
-    ) -> None:
+    def _check_number(self, name: str, value: float, bounds: Between | None, where: Where) -> None:
         if isinstance(value, float) and not math.isfinite(value):
             raise self.error(where, f"{name!r} is {value}; a finite number is wanted")
         if bounds and not bounds.low <= value <= bounds.high:
@@ -133,7 +152,7 @@ class ConfigFile:
                 where, f"{name!r} is {_shown(value)}; it has to be at least {bounds.low:g}{at_most}"
             )
 
-    def _line_of(self, where: tuple[str | int, ...]) -> int:
+    def _line_of(self, where: Where) -> int:
         """The line of a key, or of the table that it belongs to, counted from 1."""
         names = [part for part in where if isinstance(part, str)]
         counts = [part for part in where if isinstance(part, int)]
@@ -169,12 +188,12 @@ def _shown(value: Any) -> str:
     return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}..."
 
 
-def _name(where: tuple[str | int, ...]) -> str:
+def _name(where: Where) -> str:
     """The name of the key, also of an entry of a list."""
     return next(str(part) for part in reversed(where) if isinstance(part, str))
 
 
-def _no_list(where: tuple[str | int, ...], kind: Any, value: Any) -> str:
+def _no_list(where: Where, kind: Any, value: Any) -> str:
     """What a list of this kind looks like, for somebody who wrote no list."""
     name = _name(where)
     if dataclasses.is_dataclass(kind):
@@ -199,6 +218,6 @@ def _is_required(field: dataclasses.Field[Any]) -> bool:
     return field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
 
 
-def _in_table(where: tuple[str | int, ...]) -> str:
+def _in_table(where: Where) -> str:
     names = ".".join(str(part) for part in where if isinstance(part, str))
     return f" in [{names}]" if names else ""

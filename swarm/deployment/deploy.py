@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from base64 import b64encode
 
 from swarm.config.laboratory import Laboratory
 from swarm.deployment.fleet import SERVER
@@ -28,9 +27,9 @@ def deploy(
     return asyncio.run(Deployment(laboratory, planner, tell).run(dry_run, interrupt))
 
 
-def roll_back(laboratory: Laboratory, tell: Tell) -> list[Outcome]:
-    """Bring every machine back to the release that it ran before."""
-    return asyncio.run(_rolled_back(laboratory, tell))
+def roll_back(laboratory: Laboratory, tell: Tell, *, interrupt: bool = False) -> list[Outcome]:
+    """Bring every machine back to the release that it ran before; UserError as above."""
+    return asyncio.run(_rolled_back(laboratory, tell, interrupt))
 
 
 class Deployment:
@@ -47,8 +46,8 @@ class Deployment:
         async with visited(self._laboratory, self._tell) as fleet:
             await fleet.each(self._plan)
             if not dry_run:
-                if not interrupt:
-                    self._refuse_to_end_a_run(fleet)
+                if any(visit.outcome.state is State.WOULD_CHANGE for visit in fleet.visits):
+                    _refuse_to_end_a_run(fleet, interrupt)
                 await fleet.each(self._change)
             return fleet.outcomes
 
@@ -57,31 +56,21 @@ class Deployment:
         outcome = visit.outcome
         self._plans[outcome.name] = plan
         outcome.release, outcome.changes = plan.release, plan.changes
-        outcome.copied = [name.partition("/")[2] for name in plan.missing]
+        outcome.copied = [file.name for file in plan.missing.values()]
         outcome.services = visit.found["services"]
         is_same = visit.found["current"] == plan.release
         runs = all(outcome.services.get(name) == "active" for name in plan.services)
         outcome.state = State.UNCHANGED if is_same and runs else State.WOULD_CHANGE
-
-    def _refuse_to_end_a_run(self, fleet: Fleet) -> None:
-        changing = [visit for visit in fleet.visits if visit.outcome.state is State.WOULD_CHANGE]
-        for visit in fleet.visits:
-            if changing and visit.found["services"].get(f"{SERVER}.service") == "active":
-                raise UserError(
-                    f"a run is under way ({visit.outcome.name}): wait for its end, or end it with --interrupt"
-                )
 
     async def _change(self, visit: Visit) -> None:
         if visit.outcome.state is not State.WOULD_CHANGE:
             return
         visit.outcome.state = State.FAILED
         plan, policies = self._plans[visit.outcome.name], self._laboratory.policies
-        for name in plan.missing:
-            file = plan.wheels[name]
+        for place, file in plan.missing.items():
             self._tell(visit.outcome.name, f"copying {file.name} ({file.stat().st_size / 1e6:.1f} MB)")
-            await visit.link.copy(file, f"wheels/{name}")
-        files = {name: b64encode(content).decode() for name, content in plan.files.items()}
-        versions = await visit.link.ask("install", **plan.request, files=files)
+            await visit.link.copy(file, f"wheels/{place}")
+        versions = await visit.link.ask("install", **plan.request)
         self._check_versions(versions)
         within = {"within_s": policies.healthy_within_s, "keep": policies.keep_releases}
         done = await visit.link.ask("activate", release=plan.release, **within)
@@ -96,12 +85,21 @@ class Deployment:
                 raise MachineError(f"{name} is {installed[name]} and [versions] says {version}")
 
 
-async def _rolled_back(laboratory: Laboratory, tell: Tell) -> list[Outcome]:
+def _refuse_to_end_a_run(fleet: Fleet, interrupt: bool) -> None:
+    for visit in fleet.visits:
+        if visit.found["services"].get(f"{SERVER}.service") == "active" and not interrupt:
+            raise UserError(
+                f"a run is under way ({visit.outcome.name}): wait for its end, or end it with --interrupt"
+            )
+
+
+async def _rolled_back(laboratory: Laboratory, tell: Tell, interrupt: bool) -> list[Outcome]:
     async def go_back(visit: Visit) -> None:
         done = await visit.link.ask("go_back", within_s=laboratory.policies.healthy_within_s)
         visit.outcome.release, visit.outcome.services = done["release"], done["services"]
         visit.outcome.state = State.ROLLED_BACK
 
     async with visited(laboratory, tell) as fleet:
+        _refuse_to_end_a_run(fleet, interrupt)
         await fleet.each(go_back)
         return fleet.outcomes

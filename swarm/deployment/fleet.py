@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
+from swarm.config.experiment import Experiment
 from swarm.config.laboratory import Laboratory, Machine, RobotMachine
 
 AGENT = "swarm-agent@"
 BRIDGE = "swarm-bridge"
 SERVER = "swarm-server"
 DRIVER_EXTRAS = {"serial": "serial", "i2c": "i2c", "spi": "spi"}
-TRACKER_EXTRAS = {"motioncapture": "mocap"}
+TRACKER_EXTRAS = {"motioncapture": "mocap", "overhead": "vision", "overhead-sim": "vision"}
 """Extras of the package that a driver or a tracking system needs."""
 
 
@@ -34,24 +35,32 @@ class Target:
         hosted += ["server"] if self.conducts else []
         return f"{', '.join(hosted)} on {self.machine.host}"
 
-    @property
-    def extras(self) -> frozenset[str]:
-        """Extras of the package that have to be installed there."""
+    def extras(self, experiment: Experiment | None) -> frozenset[str]:
+        """Extras of the package that have to be installed there, for an experiment if there is one."""
         found = {DRIVER_EXTRAS.get(robot.driver, "") for robot in self.robots}
         found.add(TRACKER_EXTRAS.get(self.tracking_system or "", ""))
         found.add("lab" if self.conducts else "")
+        found.update("vision" for robot in self.robots if robot.calibration)
+        for robot in experiment.robot if experiment else ():
+            if robot.id in {hosted.id for hosted in self.robots}:
+                found.add("vision" if robot.watches else "")
+                found.add("camera" if robot.camera.startswith("/dev/") else "")
         return frozenset(found - {""})
 
     @property
     def units(self) -> list[str]:
         """The names of the unit files that its services are started from."""
-        everything = self.services([robot.id for robot in self.robots])
+        everything = self.services([robot.id for robot in self.robots], run=True)
         return sorted({f"{AGENT}.service" if name.startswith(AGENT) else name for name in everything})
 
-    def services(self, taking_part: Collection[str]) -> list[str]:
-        """The services to start for an experiment with these robots; the server's comes first."""
-        server = [f"{SERVER}.service"] if self.conducts else []
-        bridge = [f"{BRIDGE}.service"] if self.tracking_system is not None else []
+    def services(self, taking_part: Collection[str], run: bool) -> list[str]:
+        """The services to start for an experiment with these robots.
+
+        The server, and a bridge that it hosts, belong to a run: they come first, and only if it is to begin.
+        """
+        server = [f"{SERVER}.service"] if self.conducts and run else []
+        hosts_bridge = self.tracking_system is not None and (run or not self.conducts)
+        bridge = [f"{BRIDGE}.service"] if hosts_bridge else []
         return (
             server
             + bridge

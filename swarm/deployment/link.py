@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import time
 import zipfile
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
@@ -22,6 +23,8 @@ CONNECT_WITHIN_S = 20.0
 """Longer than a board on a bad radio link takes for its keys."""
 ALIVE_EVERY_S = 15.0
 """A machine that is silent for three times this is gone."""
+TIMES_ASKED = 8
+"""For a machine's time: the quickest answer counts, since the others have waited on their way."""
 UNKNOWN_HOST_KEY = (
     "its host key is not among the known ones: read it on the machine (ssh-keygen -lf "
     "/etc/ssh/ssh_host_ed25519_key.pub), compare, and add it with ssh-keyscan"
@@ -65,16 +68,36 @@ class Link:
 
     async def ask(self, verb: str, **request: Any) -> dict[str, Any]:
         """Have the machine do something (see swarm.deployment.board); MachineError if it cannot."""
-        request |= {"verb": verb, "directory": self._machine.directory, "services": self._services}
-        command = f"{self._machine.python} {self._program}"
-        async with self._connection.create_process(command) as process:
-            process.stdin.write(json.dumps(request))
+        async with self._asked(verb, request) as process:
             process.stdin.write_eof()
             async for line in process.stdout:
                 if (result := self._answer(line)) is not None:
                     return result
             said = (await process.stderr.read()).strip().splitlines()
         raise MachineError(said[-1] if said else f"{self._machine.python} ended without an answer")
+
+    async def clock_ahead_ns(self) -> tuple[int, int]:
+        """How far the machine's clock is ahead of this one, and by how much that may be wrong, either way."""
+        measured = []
+        async with self._asked("tell_time", {}) as process:
+            for _ in range(TIMES_ASKED):
+                asked_ns = time.time_ns()
+                process.stdin.write("\n")
+                line = await process.stdout.readline()
+                half_ns = (time.time_ns() - asked_ns) // 2
+                measured.append((half_ns, json.loads(line)["t_ns"] - asked_ns - half_ns))
+        error_ns, ahead_ns = min(measured)
+        return ahead_ns, error_ns
+
+    @asynccontextmanager
+    async def _asked(
+        self, verb: str, request: dict[str, Any]
+    ) -> AsyncIterator[asyncssh.SSHClientProcess[str]]:
+        request = request | {"verb": verb, "directory": self._machine.directory, "services": self._services}
+        command = f"{self._machine.python} {self._program}"
+        async with self._connection.create_process(command) as process:
+            process.stdin.write(f"{json.dumps(request)}\n")
+            yield process
 
     def _answer(self, line: str) -> dict[str, Any] | None:
         """The result, if a line holds it. What else a login prints is passed over."""

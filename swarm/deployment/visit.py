@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import asdict, dataclass, field
@@ -63,8 +62,6 @@ class Visit:
     found: dict[str, Any]
     """What the machine says of itself (swarm.deployment.board.machine)."""
     outcome: Outcome
-    clock_ahead_ns: int
-    """Its clock against this one, less what the answer was under way: some milliseconds."""
 
 
 Work = Callable[[Visit], Awaitable[None]]
@@ -113,7 +110,7 @@ async def _reached(
     )
     await link.prepare()
     found = await link.ask("look", packages=SYSTEM_PACKAGES)
-    visits.append(Visit(target, link, found, outcome, found["t_ns"] - time.time_ns()))
+    visits.append(Visit(target, link, found, outcome))
 
 
 async def _guarded(outcome: Outcome, work: Awaitable[None]) -> None:

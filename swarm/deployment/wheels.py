@@ -166,12 +166,22 @@ def _required(wheel: Path, extras: Collection[str]) -> list[Requirement]:
     with zipfile.ZipFile(wheel) as archive:
         (name,) = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
         lines = HeaderParser().parsestr(archive.read(name).decode()).get_all("Requires-Dist", [])
-    found = [Requirement(line) for line in lines]
-    chosen = [{"extra": extra} for extra in ("", *extras)]
+    everything = [Requirement(line) for line in lines]
+    chosen = _chosen(everything, extras)
+    more = {
+        extra for requirement in chosen if requirement.name == DISTRIBUTION for extra in requirement.extras
+    }
+    if not more <= set(extras):
+        chosen = _chosen(everything, {*extras, *more})
+    return [requirement for requirement in chosen if requirement.name != DISTRIBUTION]
+
+
+def _chosen(everything: Iterable[Requirement], extras: Collection[str]) -> list[Requirement]:
+    surroundings = [{"extra": extra} for extra in ("", *extras)]
     return [
         requirement
-        for requirement in found
-        if requirement.marker is None or any(requirement.marker.evaluate(extra) for extra in chosen)
+        for requirement in everything
+        if requirement.marker is None or any(map(requirement.marker.evaluate, surroundings))
     ]
 
 

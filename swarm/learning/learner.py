@@ -11,7 +11,7 @@ from typing import TypedDict
 from swarm.geometry import Grid
 from swarm.learning.controller import Controller, ControllerSnapshot, Outcome
 from swarm.learning.greedy_path import greedy_path_length
-from swarm.learning.memory import ObservedPath
+from swarm.learning.memory import Path
 from swarm.learning.q_table import discount_over
 from swarm.learning.random import Rng, RngState, restore_rng, rng_state
 from swarm.learning.snapshot import count
@@ -105,7 +105,7 @@ class Learner:
         self._evaluation_rng = evaluation_rng
         self._discount_rate_per_s = discount_rate_per_s
 
-    def remember(self, path: ObservedPath) -> int:
+    def remember(self, path: Path) -> int:
         """Algorithm 3's AddNewPath; returns the path's number."""
         return self.controller.memory.remember(path).number
 
@@ -134,6 +134,11 @@ class Learner:
             ended=self._ended(),
             best_path_length=self._evaluated(),
         )
+
+    @property
+    def best_moves(self) -> list[list[int]]:
+        """The actions with the highest Q value of every state: what section 2.4 lets another robot access."""
+        return [self.controller.q.best_actions(state) for state in range(self._grid.states)]
 
     def abandon(self) -> None:
         """Drop a replay whose move came to nothing; its path is not counted."""

@@ -28,6 +28,7 @@ from swarm.logs.tables import (
 )
 from swarm.logs.trial_logs import as_one
 from swarm.logs.units import parquet_metadata
+from swarm.table_files import as_parquet
 
 ROWS_IN_MEMORY = 500_000
 """Of a table: some 60 MB of the widest."""
@@ -66,21 +67,19 @@ class TableFiles:
         parts = self._parts.setdefault(name, [])
         path = self.folder / f".{name}-{len(parts):05}.part"
         parts.append(path)
-        pl.concat(self._frames.pop(name)).write_parquet(path)
+        as_parquet(pl.concat(self._frames.pop(name)))(path)
         self._waiting[name] = 0
 
     def _joined(self, name: str) -> Path:
-        path, beside = self.folder / f"{name}.parquet", self.folder / f".{name}.parquet.part"
         parts = self._parts.pop(name, [])
         units = parquet_metadata(empty_table(name).columns)
         if parts:
             rest = pl.concat(self._frames.pop(name, []) or [empty_table(name)])
             spilled = [pl.scan_parquet(part, glob=False) for part in parts]
-            pl.concat([*spilled, rest.lazy()]).sink_parquet(beside, metadata=units)
+            whole: pl.DataFrame | pl.LazyFrame = pl.concat([*spilled, rest.lazy()])
         else:
             whole = pl.concat([empty_table(name), *self._frames.pop(name, [])])
-            whole.write_parquet(beside, metadata=units)
-        beside.replace(path)
+        path = write_whole(self.folder / f"{name}.parquet", as_parquet(whole, metadata=units))
         for part in parts:
             part.unlink()
         return path
@@ -146,8 +145,7 @@ def _episodes(tables: dict[str, Path]) -> dict[str, pl.DataFrame]:
 
 
 def _write(table: pl.DataFrame, path: Path) -> Path:
-    units = parquet_metadata(table.columns)
-    return write_whole(path, lambda temporary: table.write_parquet(temporary, metadata=units))
+    return write_whole(path, as_parquet(table, metadata=parquet_metadata(table.columns)))
 
 
 def _without_empty(tables: dict[str, Path], names: Sequence[str]) -> dict[str, Path]:

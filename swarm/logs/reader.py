@@ -19,6 +19,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Message, Metadata, Schema, Statistics
 
 from swarm.errors import UserError
+from swarm.logs.chain import CHAIN, CONTINUES, Chain
 from swarm.logs.mcap_chunks import Entry, split
 from swarm.logs.mcap_index import read_index
 from swarm.logs.mcap_records import (
@@ -50,6 +51,13 @@ class LogChannel:
     epoch: int
     schema: str
     encoding: str
+
+    @classmethod
+    def of(cls, record: Channel, schema: str) -> LogChannel:
+        """As a file defines it, with the name of its schema."""
+        epoch = record.metadata.get("epoch", "")
+        number = int(epoch) if epoch.isascii() and epoch.isdecimal() and len(epoch) < 20 else 0
+        return cls(record.id, record.topic, min(number, MAX_EPOCH), schema, record.message_encoding)
 
     @cached_property
     def topic(self) -> Topic[Any] | None:
@@ -130,7 +138,7 @@ def nothing(channel: LogChannel) -> bool:
 
 MAX_EPOCH = 2**63 - 1
 """The largest that the tables' signed columns hold."""
-SAID_ONCE = ("run", "robots", "experiment", "versions", "end", "sent")
+SAID_ONCE = ("run", "robots", "experiment", "versions", "end", "sent", "received", CHAIN, CONTINUES)
 """Metadata of this project's recorder. Other programs give the same name to several records."""
 
 
@@ -158,11 +166,12 @@ class Damage:
 class LogReader:
     """Reads one log once, from front to back.
 
-    `wanted` says which channels' payloads are needed; of the others only numbers and times are kept.
-    What the log says of itself fills while `parts` is gone through and is complete afterwards.
+    `wanted` says which channels' payloads are needed; of the others only numbers and times are kept. `chain`
+    grows with the chunks, to be compared. What the log says of itself fills while `parts` is gone through and
+    is complete afterwards.
     """
 
-    def __init__(self, path: Path, wanted: Wanted = everything) -> None:
+    def __init__(self, path: Path, wanted: Wanted = everything, chain: Chain | None = None) -> None:
         self.path = path
         self.metadata: dict[str, dict[str, str]] = {}
         self.channels: dict[int, LogChannel] = {}
@@ -175,6 +184,7 @@ class LogReader:
         self.recorded_messages: int | None = None
         """As the log's index says; None if it has none, as when the recorder was killed."""
         self._wanted = wanted
+        self._chain = chain
         self._definitions = Definitions()
         self._pending: dict[int, PendingPart] = {}
 
@@ -240,6 +250,8 @@ class LogReader:
 
     def _contents(self, record: Record) -> Iterator[Part]:
         if record.opcode == Opcode.CHUNK:
+            if self._chain:
+                self._chain.add(record.body)
             content = split(record.body)
             for definition in content.definitions:
                 self._define(decoded(definition.opcode, definition.body))
@@ -262,7 +274,8 @@ class LogReader:
         elif isinstance(record, Schema | Channel):
             self._definitions.add(record)
             if isinstance(record, Channel):
-                self.channels[record.id] = self._channel(record)
+                schema = self._definitions.schema_name(record.schema_id)
+                self.channels[record.id] = LogChannel.of(record, schema)
 
     def _add(self, entries: dict[int, list[Entry]]) -> Iterator[Part]:
         """The parts that are large enough; nothing is added if any of the channels is unknown."""
@@ -279,12 +292,6 @@ class LogReader:
         pending = PendingPart(channel, self._wanted(channel))
         self._pending[channel.id] = pending
         return pending
-
-    def _channel(self, record: Channel) -> LogChannel:
-        epoch = record.metadata.get("epoch", "")
-        schema = self._definitions.schema_name(record.schema_id)
-        number = int(epoch) if epoch.isascii() and epoch.isdecimal() and len(epoch) < 20 else 0
-        return LogChannel(record.id, record.topic, min(number, MAX_EPOCH), schema, record.message_encoding)
 
     def _compare_with_index(self) -> None:
         """A record that became another one by a flipped bit shows here, too."""

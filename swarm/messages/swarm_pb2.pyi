@@ -329,7 +329,7 @@ class PathRemembered(_message.Message):
     path: _builtins.int
     """counts a robot's paths from 1"""
     source: _builtins.str
-    """"given" or "camera" """
+    """"given", "camera", or "access" to another's internal state: then it has no moves"""
     visit: _builtins.int
     """the visit it was copied in, 0 for a given path"""
     @_builtins.property
@@ -349,6 +349,34 @@ class PathRemembered(_message.Message):
     def WhichOneof(self, oneof_group: _Never) -> None: ...
 
 Global___PathRemembered: _TypeAlias = PathRemembered  # noqa: Y015
+
+@_typing.final
+class BestMoves(_message.Message):
+    """Section 2.4: a robot's estimate of the best moves, told only where another may access its internal state."""
+
+    DESCRIPTOR: _descriptor.Descriptor
+
+    MOVE_FIELD_NUMBER: _builtins.int
+    BEST_FIELD_NUMBER: _builtins.int
+    move: _builtins.int
+    """the number of the last move that it learnt from"""
+    @_builtins.property
+    def best(self) -> _containers.RepeatedScalarFieldContainer[_builtins.int]:
+        """for each state, bit i is set if action i has the highest Q value"""
+
+    def __init__(
+        self,
+        *,
+        move: _builtins.int = ...,
+        best: _abc.Iterable[_builtins.int] | None = ...,
+    ) -> None: ...
+    _HasFieldArgType: _TypeAlias = _Never  # noqa: Y015
+    def HasField(self, field_name: _HasFieldArgType) -> _builtins.bool: ...
+    _ClearFieldArgType: _TypeAlias = _typing.Literal["best", b"best", "move", b"move"]  # noqa: Y015
+    def ClearField(self, field_name: _ClearFieldArgType) -> None: ...
+    def WhichOneof(self, oneof_group: _Never) -> None: ...
+
+Global___BestMoves: _TypeAlias = BestMoves  # noqa: Y015
 
 @_typing.final
 class Replay(_message.Message):

@@ -13,6 +13,9 @@ from swarm.messages.topics import (
     RUN_IDENTITY,
     RUN_STATUS,
     TABLE,
+    VIEW_ARENA,
+    VIEW_LOG,
+    VIEW_ROBOTS,
     Delivery,
     Topic,
 )
@@ -41,7 +44,7 @@ def markdown_table() -> str:
     """The page docs/keys.md."""
     rows = "".join(f"| {' | '.join(_cells(topic))} |\n" for topic in TABLE)
     deliveries = "".join(f"- **{delivery.value}**: {meaning}.\n" for delivery, meaning in _MEANING.items())
-    return f"{_HEAD}{rows}\nDelivery:\n\n{deliveries}\n{_beside_the_table()}"
+    return f"{_HEAD}{rows}\nDelivery:\n\n{deliveries}\n{_beside_the_table()}\n{_in_the_log_alone()}"
 
 
 def _cells(topic: Topic[Any]) -> tuple[str, ...]:
@@ -70,6 +73,16 @@ def _beside_the_table() -> str:
         f"query for `{RUN_IDENTITY}` with the run's id and all settings, one for `{RUN_STATUS}` with a\n"
         f"`RunStatus`, and one for `{OPERATOR_ORDER}`, whose payload is an `OperatorOrder`, with an\n"
         "`OrderAnswer`. None of these is logged; of every order the log has an event.\n"
+    )
+
+
+def _in_the_log_alone() -> str:
+    return (
+        "A log holds three more, which are not on the wire: the server makes them for viewers.\n\n"
+        "| key | message | meaning | rate |\n|---|---|---|---|\n"
+        f"| `{VIEW_ARENA}` | `foxglove.SceneUpdate` | the borders of the compartments | once |\n"
+        f"| `{VIEW_ROBOTS}` | `foxglove.PosesInFrame` | the newest pose of every robot | 1 Hz |\n"
+        f"| `{VIEW_LOG}` | `foxglove.Log` | every event | as it happens |\n"
     )
 
 

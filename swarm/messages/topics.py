@@ -49,8 +49,16 @@ class Role(Enum):
 
 SHORT_BYTES = 1_024
 """Room for a message of numbers: the longest of them takes some 120 bytes, its header 24."""
+MIDDLE_BYTES = 8_192
+"""With words, or lists of numbers: a page of text, a path of thousands of moves."""
 LONG_BYTES = 65_536 + 24
-"""Of a message with lists or words: no payload that is larger is decoded. Its header comes beside it."""
+"""With lists of messages: no payload that is larger is decoded. Its header comes beside it."""
+
+
+ROOM_BYTES = 8 << 20
+"""Under one key: 8,000 short messages, or 127 of the longest."""
+KEPT = 900
+"""Half an hour of a robot's moves, which stands while no server is there; what a hub takes in at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +83,26 @@ class Topic(Generic[M]):
     def largest_bytes(self) -> int:
         """Of payload and header together; a hub drops what is larger."""
         fields = self.message.DESCRIPTOR.fields
-        long = any(field.is_repeated or field.type == field.TYPE_STRING for field in fields)
-        return LONG_BYTES if long else SHORT_BYTES
+        if any(field.is_repeated and field.message_type for field in fields):
+            return LONG_BYTES
+        if any(field.is_repeated or field.type == field.TYPE_STRING for field in fields):
+            return MIDDLE_BYTES
+        return SHORT_BYTES
+
+    @property
+    def most_waiting(self) -> int:
+        """How many messages under one of its keys wait at most until a server looks."""
+        return ROOM_BYTES // self.largest_bytes
+
+    @property
+    def kept(self) -> int:
+        """How many messages under one of its keys a sender keeps for a server that missed them."""
+        return min(KEPT, self.most_waiting * 9 // 10)
+
+    @property
+    def is_recovered(self) -> bool:
+        """Whether a server asks for what it missed of it."""
+        return self.delivery is Delivery.EVERY and self.sender in (Role.ROBOT, Role.TRACKER)
 
     def key(self, robot: str = "*") -> str:
         """The key of one robot, or with "*" the expression for all of them."""
@@ -123,6 +149,14 @@ MOVE = Topic("robot/{robot}/move", pb.Move, "one transition learnt", None, Deliv
 BEST_PATH = Topic("robot/{robot}/best_path", pb.BestPath, "every ten moves", None, Delivery.EVERY, True)
 PATH = Topic("robot/{robot}/path", pb.PathRemembered, "a path entered the memory", None, Delivery.EVERY, True)
 REPLAY = Topic("robot/{robot}/replay", pb.Replay, "a replay ended", None, Delivery.EVERY, True)
+BEST_MOVES = Topic(
+    "robot/{robot}/best_moves",
+    pb.BestMoves,
+    "its internal state, if another may access it",
+    None,
+    Delivery.EVERY,
+    True,
+)
 STATUS = Topic("robot/{robot}/status", pb.Status, "activity and health", 1.0, Delivery.NEWEST, True)
 EVENT = Topic("robot/{robot}/event", pb.Event, "what a person should know", None, Delivery.EVERY, True)
 TRACKER_EVENT = Topic(
@@ -168,6 +202,7 @@ TABLE: tuple[Topic[Any], ...] = (
     BEST_PATH,
     PATH,
     REPLAY,
+    BEST_MOVES,
     STATUS,
     EVENT,
     VISIT,
@@ -182,12 +217,18 @@ TABLE: tuple[Topic[Any], ...] = (
 
 LOCKSTEP_TICK = "lockstep/tick/{process}"
 LOCKSTEP_DONE = "lockstep/done"
+RECOVERY = "{key}/@adv/**"
+"""What a sender and a server say to each other about messages that were missed: Zenoh's own keys."""
 ACCOUNT = "account/{name}"
 """What a process says as it leaves: how many messages of each key it has sent."""
 ALIVE = "alive/{kind}/{name}/{host}/{epoch}/{identity}"
 """Presence (liveliness tokens): kind is robot, tracker, server or process; identity is a fingerprint."""
+EARLIER = {"robot": "earlier-robot", "tracker": "earlier-tracker"}
+"""Kinds of presence of a robot's or tracker's starts that are over: a later one repeats what they said."""
 NO_ROBOT = {topic.pattern.split("/")[0] for topic in TABLE if "{robot}" not in topic.pattern} | {"view"}
 """What the tables of a log call those who are no robot: no robot may be called so. `view` is the server's."""
+VIEW_ARENA, VIEW_ROBOTS, VIEW_LOG = "view/arena", "view/robots", "view/log"
+"""Never on the wire: what the server writes into the log for viewers, in Foxglove's schemas."""
 RUN_IDENTITY = "run/identity"
 """Asked, not published: the server answers with the run's id and every setting."""
 RUN_STATUS = "run/status"

@@ -152,4 +152,4 @@ def _draw_path(axes: Axes, label: str, start: tuple[int, int], moves: tuple[Move
 
 def _mark(axes: Axes, grid: Grid, state: int, marker: str, label: str) -> None:
     column, row = grid.cell(state)
-    axes.plot([column], [row], marker, markersize=9, label=label, zorder=3)
+    axes.plot([column], [row], marker, markersize=9, label=label, zorder=3, clip_on=False)

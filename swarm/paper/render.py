@@ -6,12 +6,13 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from swarm.files import write_png, write_table
+from swarm.files import write_png
 from swarm.gridworld.arena import shortest_path
 from swarm.paper.options import Settings
 from swarm.paper.results import Results
 from swarm.paper.store import RunStore, Timing
 from swarm.paper.study import Drawing, Figure, Study
+from swarm.table_files import write_table
 
 if TYPE_CHECKING:
     import polars as pl

@@ -17,6 +17,7 @@ from swarm.files import write_json, write_whole
 from swarm.gridworld.condition import Condition
 from swarm.paper.conditions import shortened
 from swarm.paper.readings import DEFAULT, Readings
+from swarm.table_files import as_parquet
 
 if TYPE_CHECKING:
     import polars as pl
@@ -82,7 +83,7 @@ class RunStore:
                 "q_error": list(trace.q_error),
             }
         )
-        write_whole(self._path(condition, run), lambda path: frame.write_parquet(path, compression="zstd"))
+        write_whole(self._path(condition, run), as_parquet(frame, compression="zstd"))
 
     def load(self, condition: Condition, run: int) -> pl.DataFrame:
         """The rows of one run, a learner each."""

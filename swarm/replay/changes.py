@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable
 from dataclasses import fields
 from typing import Any
 
+from swarm.config.changes import toml_value
 from swarm.config.experiment import LearningSettings
 from swarm.errors import UserError, nearest
 
@@ -21,13 +21,5 @@ def changes_of(texts: Iterable[str]) -> dict[str, Any]:
             raise UserError(f"--with {text}: say it as NAME=VALUE, for instance --with beta=0.3")
         if name not in known:
             raise UserError(f"--with {text}: [learning] has no {name!r}; {nearest(name, known)}")
-        changes[name] = _value(value)
+        changes[name] = toml_value(value)
     return changes
-
-
-def _value(text: str) -> Any:
-    """As in a TOML file; words may stand without quotes."""
-    try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        return text

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import chain, combinations, islice
 from typing import Any
 
+from swarm.errors import UserError
 from swarm.geometry import Move
 from swarm.learning.learner import Choice, Learner, LearnerSnapshot, MoveRecord, Transition
 from swarm.learning.memory import ObservedPath
@@ -22,6 +23,8 @@ from swarm.messages import topics
 from swarm.replay.comparison import Difference, is_same, move_differences, recorded_replay, told
 from swarm.replay.recorded import RecordedLearning, Said
 
+ACCESS = "access"
+"""Of a path whose moves another robot's internal state decides."""
 GIVEN = "given"
 """Of a path that every start of a robot's process has from the experiment, whatever is in the log."""
 MOST_DISPLACED = 6
@@ -131,13 +134,16 @@ class LearnerReplay:
 
     def _reading_of(self, place: int, between: Sequence[Said]) -> GivenUp:
         """Where a robot was carried away, the log does not say whether it was making a move. What it decided
-        from there on does: each case is tried until it leads to a decision that was not made.
+        from there on does: each case is tried until it leads to a decision that was not made. Of a robot that
+        was stopped at once the log does say it.
         """
         if place not in self.given_up:
+            stopped = tuple(said for said in between if stopped_in(said) is not None)
             places = [said for said in between if displaced_from(said) is not None][:MOST_DISPLACED]
             if not places:
-                return ()
-            cases = chain.from_iterable(combinations(places, size) for size in range(len(places) + 1))
+                return stopped
+            chosen = chain.from_iterable(combinations(places, size) for size in range(len(places) + 1))
+            cases = (stopped + case for case in chosen)
             self._forks.append(self._fork(place, cases))
             self.given_up[place] = next(cases)
         return self.given_up[place]
@@ -226,7 +232,7 @@ class LearnerReplay:
         for said in between:
             self._take(said.message)
             if said in given_up:
-                choices.append(self.learner.choose(displaced_from(said) or 0))
+                choices.append(self.learner.choose(displaced_from(said) or stopped_in(said) or 0))
                 self.learner.abandon()
         choices.append(self.learner.choose(state))
         rejected = [told(choice.rejected) for choice in choices if choice.rejected]
@@ -237,6 +243,8 @@ class LearnerReplay:
         """What happens to a learner between its moves."""
         if isinstance(message, pb.Visit) and message.phase == pb.Visit.READY:
             self.learner.abandon()
+        elif isinstance(message, pb.PathRemembered) and message.source == ACCESS:
+            raise UserError("a robot that accesses another's internal state cannot be replayed")
         elif isinstance(message, pb.PathRemembered) and message.source != GIVEN:
             self._remember(ObservedPath(tuple(map(Move, message.moves))))
 
@@ -279,8 +287,17 @@ def _transition(recorded: pb.Move) -> Transition:
 
 def displaced_from(said: Said) -> int | None:
     """The cell that a robot was standing in or leaving when it was carried away, by its event."""
+    return _cell_of(said, ("displaced",))
+
+
+def stopped_in(said: Said) -> int | None:
+    """The cell that a robot was leaving when it gave up its move for an emergency or a lost server."""
+    return _cell_of(said, ("estop", "server_lost"))
+
+
+def _cell_of(said: Said, names: tuple[str, ...]) -> int | None:
     message = said.message
-    if not isinstance(message, pb.Event) or message.name != "displaced":
+    if not isinstance(message, pb.Event) or message.name not in names:
         return None
-    cell = re.search(r"cell (\d+)", message.text)
+    cell = re.search(r"from cell (\d+)", message.text)
     return int(cell[1]) if cell else None

@@ -8,9 +8,10 @@ import numpy as np
 import polars as pl
 from matplotlib.figure import Figure
 
-from swarm.files import write_png, write_table
+from swarm.files import write_png
 from swarm.geometry import Grid, Move
 from swarm.learning.q_table import QTable
+from swarm.table_files import write_table
 
 ARROW = 0.6
 """In cells: arrows of two neighbours do not touch."""

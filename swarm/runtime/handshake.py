@@ -16,6 +16,10 @@ ANSWER_WITHIN_S = 1.0
 BETWEEN_QUESTIONS_S = 0.2
 QUESTIONS_IN_SILENCE = 25
 """Five seconds: a server that is there answers the first."""
+UNANSWERED = (
+    "waiting for a server that says whose run this is (one that is there does not answer a certificate that "
+    "was renewed or revoked)"
+)
 
 
 def agreed_run(
@@ -30,7 +34,7 @@ def agreed_run(
         if answers := session.ask(RUN_IDENTITY, ANSWER_WITHIN_S):
             return compared(answers[0], mine)
         if question == QUESTIONS_IN_SILENCE:
-            print("waiting for a server that says whose run this is", file=sys.stderr, flush=True)
+            print(UNANSWERED, file=sys.stderr, flush=True)
     raise AssertionError("a clock has no last tick")
 
 

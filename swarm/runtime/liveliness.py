@@ -11,7 +11,7 @@ from swarm.errors import UserError
 from swarm.messages.topics import ALIVE
 from swarm.runtime.zenoh_session import PresenceWatch, Session
 
-ALIVE_SERVER = "alive/server/**"
+ALIVE_SERVER = "alive/server/*/*/*/*"
 ALIVE_ROBOTS_AND_TRACKERS = "alive/*/*/*/*/*"
 
 
@@ -77,6 +77,8 @@ class ServerWatch:
         self._say = say
         self._present: set[str] = set()
         self._lost = False
+        self.losses = 0
+        """How often it was lost: messages may be missing since."""
 
     def look(self) -> None:
         """Take in who has come and gone."""
@@ -84,6 +86,7 @@ class ServerWatch:
             (self._present.add if is_there else self._present.discard)(key)
             if self._lost == bool(self._present):
                 self._lost = not self._present
+                self.losses += self._lost
                 self._say("lost the server: waiting for it" if self._lost else "resumed: the server is back")
 
 

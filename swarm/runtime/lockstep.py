@@ -15,6 +15,7 @@ from swarm.messages.topics import LOCKSTEP_DONE, LOCKSTEP_TICK, Delivery, Topic
 from swarm.runtime.liveliness import ALIVE_SERVER
 from swarm.runtime.lockstep_frames import BAD_FRAME, TICK, pack_answer, pack_item, unpack_items
 from swarm.runtime.node import Sequencer, Step
+from swarm.runtime.receipts import Receipts
 from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Session, SessionSettings
 
@@ -68,8 +69,7 @@ class LockstepNode:
         self._owed = False
         self._main_sends = False
         self._news = threading.Event()
-        self.keys_received: set[str] = set()
-        """Every key of which this process received a message."""
+        self.received = Receipts()
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
         subscription = Subscription(topic)
@@ -80,6 +80,8 @@ class LockstepNode:
         key = topic.key(robot)
         header = Header(EPOCH, self._sequencer.following(key), self._t_ns)
         self._published.append(pack_item(key, header, message.SerializeToString()))
+
+    losses = 0
 
     def lag_s(self) -> float:
         return 0.0
@@ -195,7 +197,7 @@ class LockstepNode:
                 if key_matches(expression, key)
             )
             self._routes[key] = subscriptions
-            self.keys_received.add(key)
+        self.received.heard(key, header.epoch, payload)
         for subscription in subscriptions:
             subscription.put(key, header, payload)
 

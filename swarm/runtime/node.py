@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from itertools import chain
 from typing import Any, Protocol, TypeVar
 
 from google.protobuf.message import Message
@@ -14,11 +15,13 @@ from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.header import Header, Item
 from swarm.messages.topics import ACCOUNT, Delivery, Topic, topic_of
-from swarm.runtime.account import pack_account
+from swarm.runtime.account import Account
 from swarm.runtime.clock_offset import ClockOffset, described
 from swarm.runtime.link_lag import LinkLag
 from swarm.runtime.liveliness import ALIVE_SERVER, ServerWatch
+from swarm.runtime.receipts import Receipts
 from swarm.runtime.senders import BelievedSenders
+from swarm.runtime.spool import Spool
 from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Inbox, Publisher, Session, WireSample
 
@@ -35,8 +38,8 @@ HELD = 64
 class Node(Protocol):
     """The same for real time and for lockstep, so that no process knows which it is in."""
 
-    keys_received: set[str]
-    """Every key of which this process received a message."""
+    received: Receipts
+    """All that has reached this process."""
     run_id: str
     """The run that this process takes part in; empty in a lockstep."""
 
@@ -51,6 +54,10 @@ class Node(Protocol):
 
     def lag_s(self) -> float:
         """Real seconds by which this process is behind what others send; 0 where time is a message."""
+
+    @property
+    def losses(self) -> int:
+        """How often the connection was lost: what was sent meanwhile never comes."""
 
     def run(self, step: Step) -> None:
         """Step at every tick, until the run ends.
@@ -80,8 +87,9 @@ class Sequencer:
 class LivePublisher:
     """Sends messages over the network, each with its sender's epoch, its number and the time."""
 
-    def __init__(self, session: Session, clock: WallClock, epoch: int) -> None:
+    def __init__(self, session: Session, clock: WallClock, epoch: int, spool: Spool | None = None) -> None:
         self.epoch = epoch
+        self._spool = spool
         self._session = session
         self._clock = clock
         self._sequencer = Sequencer()
@@ -91,22 +99,50 @@ class LivePublisher:
         """Send a message under the topic's key, of a robot if it has one; returns what was sent."""
         key = topic.key(robot)
         header = Header(self.epoch, self._sequencer.following(key), self._clock.now_ns())
-        if key not in self._publishers:
-            self._publishers[key] = self._session.publisher(key, topic.delivery)
-        payload = message.SerializeToString()
-        self._publishers[key].put(payload, attachment=header.pack())
-        return Item(key, header, payload)
+        item = Item(key, header, message.SerializeToString())
+        if self._spool and topic.is_recovered:
+            self._spool.put(item)
+        self._put(item, topic)
+        return item
+
+    def repeat(self, items: Iterable[Item]) -> None:
+        """Send the last that earlier starts have sent, as it was, for a server that missed it."""
+        by_key: dict[str, list[Item]] = {}
+        for item in items:
+            by_key.setdefault(item.key, []).append(item)
+        for key, of_key in by_key.items():
+            if found := topic_of(key):
+                topic, _ = found
+                for item in of_key[-topic.kept :]:
+                    self._put(item, topic)
+
+    def _put(self, item: Item, topic: Topic[Any]) -> None:
+        if item.key not in self._publishers:
+            session = self._session
+            self._publishers[item.key] = (
+                session.keeping_publisher(item.key, topic.kept)
+                if topic.is_recovered
+                else session.publisher(item.key, topic.delivery)
+            )
+        self._publishers[item.key].put(item.payload, attachment=item.header.pack())
 
     @property
     def sent(self) -> Mapping[str, int]:
         """Key -> the number of its last message."""
         return self._sequencer.last
 
-    def give_account(self, name: str) -> None:
-        """Tell the server, as the last thing, how many messages of each key have been sent."""
-        header = Header(self.epoch, 1, self._clock.now_ns())
+    def give_account(self, name: str, received: Receipts) -> None:
+        """Tell the server, as the last thing, how much has been sent and received; before it, what earlier
+        starts of this process have sent of what must not be lost.
+        """
         publisher = self._session.publisher(ACCOUNT.format(name=name), Delivery.EVERY)
-        publisher.put(pack_account(self.sent), attachment=header.pack())
+        earlier: dict[int, dict[str, int]] = {}
+        for item in self._spool.left if self._spool else ():
+            earlier.setdefault(item.header.epoch, {})[item.key] = item.header.sequence
+        accounts = [(epoch, Account(sent)) for epoch, sent in earlier.items()]
+        for epoch, account in [*accounts, (self.epoch, Account(self.sent, received.counts()))]:
+            header = Header(epoch, 1, self._clock.now_ns())
+            publisher.put(account.pack(), attachment=header.pack())
 
 
 class LiveNode:
@@ -121,6 +157,7 @@ class LiveNode:
         run_id: str = "",
         say: Callable[[str], None] = lambda text: None,  # noqa: ARG005
         going_on: Callable[[], None] = lambda: None,
+        spool: Spool | None = None,
     ) -> None:
         self.run_id = run_id
         self._going_on = going_on
@@ -131,10 +168,14 @@ class LiveNode:
         self._clocks: dict[str, tuple[int, ClockOffset]] = {}
         self._clock = clock
         self._period_s = period_s
-        self._live = LivePublisher(session, clock, epoch)
+        self._live = LivePublisher(session, clock, epoch, spool)
+        if spool:
+            self._live.repeat(spool.left)
         self._lag = LinkLag(clock.speed)
         self._inboxes: list[tuple[Inbox, Subscription[Any], deque[WireSample]]] = []
-        self.keys_received: set[str] = set()
+        self._first_inbox: dict[str, int] = {}
+        """By key expression: what several inboxes hear has come once."""
+        self.received = Receipts()
         self._run_states = self.subscribe(topics.RUN_STATE)
 
     def subscribe(self, topic: Topic[M], robot: str = "*") -> Subscription[M]:
@@ -142,6 +183,7 @@ class LiveNode:
         subscription = Subscription(topic)
         self._senders.follow(topic)
         inbox = self._session.inbox(topic.key(robot), topic.delivery, keep_all=robot == "*")
+        self._first_inbox.setdefault(topic.key(robot), len(self._inboxes))
         self._inboxes.append((inbox, subscription, deque(maxlen=HELD)))
         return subscription
 
@@ -155,9 +197,13 @@ class LiveNode:
     def lag_s(self) -> float:
         return self._lag.seconds(self._clock.now_ns())
 
+    @property
+    def losses(self) -> int:
+        return self._server.losses
+
     def give_account(self, name: str) -> None:
-        """Tell the server, as the last thing, how many messages of each key this process has sent."""
-        self._live.give_account(name)
+        """Tell the server, as the last thing, how much this process has sent and received."""
+        self._live.give_account(name, self.received)
 
     def run(self, step: Step) -> None:
         for t_ns in self._clock.ticks(self._period_s):
@@ -182,11 +228,13 @@ class LiveNode:
     def _take_in(self) -> None:
         arrived = [inbox.poll() for inbox, _, _ in self._inboxes]
         self._senders.look()
+        for sample in chain.from_iterable(arrived[first] for first in self._first_inbox.values()):
+            header = Header.unpack(sample.attachment)
+            self.received.heard(sample.key, header.epoch if header else 0, sample.payload)
         for samples, (_, subscription, held) in zip(arrived, self._inboxes, strict=True):
             waiting = [*held, *samples]
             held.clear()
             for sample in waiting:
-                self.keys_received.add(sample.key)
                 header = Header.unpack(sample.attachment)
                 if header and not self._believes(sample.key, header):
                     held.append(sample)

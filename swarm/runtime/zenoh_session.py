@@ -11,12 +11,14 @@ import json
 import os
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from swarm.access.credentials import zenoh_values
+from swarm.access.tls_check import check_certificates
 from swarm.errors import UserError
 from swarm.messages.topics import Delivery
 from swarm.runtime.background import in_background
@@ -24,11 +26,15 @@ from swarm.runtime.endpoint import check_endpoint, check_protection
 
 if TYPE_CHECKING:
     import zenoh
+    from zenoh.ext import AdvancedPublisher, AdvancedSubscriber
+
+    Samples = zenoh.handlers.Handler[zenoh.Sample]
 
 ONE_THREAD = (
     "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
 )
-"""Three threads in place of seven, and a lockstep of ten processes a fifth faster (measured)."""
+"""Three threads in place of seven, and a lockstep of ten processes a fifth faster (measured). A hub that
+strangers reach keeps the seven: with one, who makes it wait would make everybody wait."""
 QUEUE_DEPTH = 65_536
 """Messages; fifty robots send some thousand a second: room for more than half a minute."""
 NEWEST_KEPT = 64
@@ -40,6 +46,8 @@ QUESTIONS_WAITING = 256
 LARGEST_MESSAGE_BYTES = 16 << 20
 """What a session takes in: thrice an exchange of 1000 robots in lockstep. Zenoh would put 1 GiB together
 before anybody could refuse it."""
+HEARTBEAT_S = 0.5
+"""After a publisher's last message it says so often, for a while, what its number was."""
 WAIT_FOR_ROOM_S = 5.0
 """What must not be dropped waits so long for room, or as long as the lease; then Zenoh reconnects."""
 
@@ -78,13 +86,13 @@ class WireSample:
 class Inbox:
     """Samples of one subscription, polled by the main loop."""
 
-    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
+    def __init__(self, subscriber: zenoh.Subscriber[Samples] | AdvancedSubscriber[Samples]) -> None:
         self._subscriber = subscriber
 
-    def poll(self) -> list[WireSample]:
-        """What has arrived since the last call, in order; of more than `MOST_AT_ONCE` the rest comes next."""
+    def poll(self, most: int = MOST_AT_ONCE) -> list[WireSample]:
+        """What has arrived since the last call, in order; of more than `most` the rest comes next."""
         samples: list[WireSample] = []
-        while len(samples) < MOST_AT_ONCE and (sample := self._subscriber.try_recv()) is not None:
+        while len(samples) < most and (sample := self._subscriber.try_recv()) is not None:
             samples.append(_sample(sample))
         return samples
 
@@ -121,7 +129,7 @@ class Questions:
 class PresenceWatch:
     """The presence keys that have appeared and vanished, polled by the main loop."""
 
-    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
+    def __init__(self, subscriber: zenoh.Subscriber[Samples]) -> None:
         self._subscriber = subscriber
 
     def poll(self) -> list[tuple[str, bool]]:
@@ -141,7 +149,7 @@ class Put(Protocol):
 class Publisher:
     """Puts payloads under one key."""
 
-    def __init__(self, publisher: zenoh.Publisher) -> None:
+    def __init__(self, publisher: zenoh.Publisher | AdvancedPublisher) -> None:
         self.put: Put = publisher.put
         """Zenoh's own, without a call in between, which would show in the pace of a lockstep."""
 
@@ -158,8 +166,10 @@ class Session:
     """
 
     def __init__(self, settings: SessionSettings, waiting: Callable[[], None] = lambda: None) -> None:
-        os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
+        if not settings.limits:
+            os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
         import zenoh
+        import zenoh.ext
 
         zenoh.init_log_from_env_or(ZENOH_SAYS)
         self.endpoint = settings.endpoint
@@ -167,6 +177,7 @@ class Session:
         self._tokens: list[zenoh.LivelinessToken] = []
         self._listening: list[zenoh.Subscriber[None]] = []
         self._answering: list[zenoh.Queryable[None]] = []
+        self._recovering: list[AdvancedSubscriber[Samples]] = []
         try:
             self._session = in_background(partial(_opened, settings), waiting)
         except zenoh.ZError as error:
@@ -180,10 +191,16 @@ class Session:
         self.close()
 
     def close(self) -> None:
-        """Undeclare everything and leave; presence tokens vanish for the others."""
+        """Undeclare everything and leave; presence tokens vanish for the others.
+
+        Zenoh gives up after a while if another side does not read: there is nothing that is left to do then.
+        """
         atexit.unregister(self.close)
         if not self._session.is_closed():
-            self._session.close()  # type: ignore[no-untyped-call]
+            with suppress(self._zenoh.ZError):
+                while self._recovering:  # Left declared, they would keep the process alive.
+                    self._recovering.pop().undeclare()  # type: ignore[no-untyped-call]
+                self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str, delivery: Delivery) -> Publisher:
         """A publisher with the delivery's guarantees."""
@@ -200,6 +217,34 @@ class Session:
                 express=delivery is Delivery.URGENT,
             )
         )
+
+    def keeping_publisher(self, key: str, depth: int) -> Publisher:
+        """A publisher that keeps the newest for a `recovering_inbox`; they talk under keys of `RECOVERY`."""
+        ext = self._zenoh.ext
+        return Publisher(
+            ext.declare_advanced_publisher(
+                self._session,
+                key,
+                congestion_control=self._zenoh.CongestionControl.BLOCK,
+                cache=ext.CacheConfig(max_samples=depth),
+                sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT_S),
+                publisher_detection=True,
+            )
+        )
+
+    def recovering_inbox(self, key: str, depth: int) -> Inbox:
+        """As `inbox_of_others`, and asks a `keeping_publisher` for what it missed, in that one's order."""
+        ext = self._zenoh.ext
+        subscriber = ext.declare_advanced_subscriber(
+            self._session,
+            key,
+            self._zenoh.handlers.RingChannel(depth),
+            allowed_origin=self._zenoh.Locality.REMOTE,
+            history=ext.HistoryConfig(detect_late_publishers=True),
+            recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+        )
+        self._recovering.append(subscriber)
+        return Inbox(subscriber)
 
     def inbox(self, key: str, delivery: Delivery, *, keep_all: bool = False) -> Inbox:
         """Subscribe to a key expression.
@@ -282,7 +327,10 @@ def _opened(settings: SessionSettings) -> zenoh.Session:
 
     check_endpoint(settings.endpoint)
     check_protection(settings.endpoint, bool(settings.credentials or settings.config), settings.insecure)
-    return zenoh.open(_config(settings))
+    config = _config(settings)
+    if settings.credentials and not settings.hub:
+        check_certificates(settings.endpoint, settings.credentials)
+    return zenoh.open(config)
 
 
 def _keep_python_state() -> None:

@@ -36,10 +36,13 @@ def draw_side_by_side(
         axes.set_xlabel("moves made by the learner")
         axes.xaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
         axes.grid(alpha=0.25)
-        axes.legend(frameon=False)
     left.set_ylabel("best path length (moves)")
     left.set_ylim(bottom=0)
     figure.suptitle(title, fontweight="bold")
+    # Beside the title: curves and bands leave no free place within the axes.
+    figure.legend(
+        *left.get_legend_handles_labels(), loc="outside upper right", frameon=False, ncols=len(paper)
+    )
     figure.supxlabel(note, x=0.01, ha="left", fontsize=8.5)
     return figure
 

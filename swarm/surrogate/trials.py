@@ -13,7 +13,6 @@ import polars as pl
 from swarm.analysis.learning_curves import curve_table
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
-from swarm.files import write_table
 from swarm.learning.learner import MOVES_BETWEEN_EVALUATIONS
 from swarm.parallel import workers
 from swarm.statistics.intervals import interval
@@ -21,6 +20,7 @@ from swarm.statistics.samples import Curves, Scale, average_of_learners
 from swarm.surrogate.copies import CopyStore, load_copies
 from swarm.surrogate.durations import Durations, load_durations
 from swarm.surrogate.trial import CopiedPath, RobotTrial, TrialOutcome
+from swarm.table_files import write_table
 
 PAPER_TRIALS = 4
 """Of figures 25 and 26."""
@@ -49,8 +49,9 @@ def run_trials(
     trials: int,
     jobs: int,
     show: Callable[[], object] = lambda: None,
+    scheduler: str = "processes",
 ) -> ManyTrials:
-    """Trials 0 to `trials` - 1, each with its own seed; the same whatever the number of jobs."""
+    """Trials 0 to `trials` - 1, each with its own seed; the same wherever they run."""
     if experiment.run.moves < MOVES_BETWEEN_EVALUATIONS:
         raise UserError(
             f"{experiment.run.moves} moves give no curve: the best path is noted every "
@@ -58,7 +59,7 @@ def run_trials(
         )
     stored = load_copies(copies), load_durations(durations)
     outcomes: list[TrialOutcome] = []
-    with workers("processes", jobs) as pool:
+    with workers(scheduler, jobs) as pool:
         for outcome in pool.each(one_trial, ((experiment, *stored, trial) for trial in range(trials))):
             outcomes.append(outcome)
             show()

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robot_agent.activities import Finished
-from robot_agent.assembly import Assembly
+from robot_agent.activities import Finished, Moving
+from robot_agent.assembly import Assembly, Place
 from swarm.clock import NS_PER_S
 from swarm.config.experiment import Experiment
 from swarm.messages import swarm_pb2 as pb
@@ -28,17 +28,26 @@ TICK_NS = NS_PER_S // 10
 class Rig:
     """One learner at work; the test is its conductor."""
 
-    def __init__(self, directory: Path, moves: int = 1000, *, watches: bool = False) -> None:
-        experiment = Experiment.load(write_experiment(directory, experiment_text(learners(1), moves)))
+    def __init__(
+        self, directory: Path, moves: int = 1000, *, watches: bool = False, without_server: str = "wait"
+    ) -> None:
+        text = experiment_text(learners(1), moves)
+        text = text.replace("[arena]", f'without_server = "{without_server}"\n[arena]')
+        experiment = Experiment.load(write_experiment(directory, text))
         if watches:
             (robot,) = experiment.robot
             experiment = replace(experiment, robot=(replace(robot, watches="r0"),))
         self.node = LocalNode()
-        self.agent = Assembly(experiment, self.node, 0).agent("r0")
+        self._assembly = Assembly(experiment, self.node, 0, Place(state=directory))
+        self.agent = self._assembly.agent("r0")
         self.compartment = experiment.compartment(experiment.robot[0])
         truths = self.node.subscribe(topics.TRUTH)
         tracker = SimulatedTracker(experiment.tracker, truths.take, lambda _: np.random.default_rng(1))
         self._bridge = Bridge(tracker, Plausibility(PlausibilitySettings(13.0, 1.3)), self.node, ["r0"])
+
+    def restart(self) -> None:
+        """A new process in place of the agent's, with what the old one has kept."""
+        self.agent = self._assembly.agent("r0")
 
     def run(
         self,
@@ -55,6 +64,7 @@ class Rig:
             if phase is not None:
                 self.node.publish(topics.RUN_STATE, pb.RunState(phase=phase))
             self.agent.step(self.node.t_ns)
+            self.agent.keep_emergency()
             if tracked:
                 self._bridge.step(self.node.t_ns)
         return [
@@ -140,6 +150,73 @@ def test_an_emergency_that_only_the_server_tells_of_stops_it_too(rig: Rig) -> No
     rig.run(30)
     assert stands(rig.run(2, pb.RunState.ESTOPPED))
     assert of(rig.run(10), "move") == [], "the run's state alone does not release it"
+
+
+def test_an_emergency_outlives_the_agent(rig: Rig) -> None:
+    rig.run(30)
+    rig.node.publish(topics.ESTOP, pb.EmergencyStop(operator="anna@lab", reason="a hand"))
+    rig.run(1)
+    rig.restart()
+    stopped = rig.run(10)
+    assert stands(stopped)
+    assert of(stopped, "move") == []
+    (event,) = of(stopped, "event")
+    assert event.text == "emergency stop by anna@lab (a hand): the wheels stand until it is released"
+    rig.order(pb.Order.RELEASE)
+    rig.run(1)
+    rig.restart()
+    assert len(of(rig.run(60), "move")) > 5
+
+
+def test_a_move_that_an_emergency_ended_is_told_of_by_its_cell(rig: Rig) -> None:
+    """Whoever replays the log has to know of a choice that came to nothing."""
+    rig.run(30)
+    while not isinstance(rig.agent.activity, Moving):
+        rig.run(0.1)
+    state = rig.agent.activity.state
+    rig.node.publish(topics.ESTOP, pb.EmergencyStop(operator="anna@lab"))
+    (event,) = of(rig.run(1), "event")
+    assert event.text.endswith(f"; the move from cell {state} is not learnt from")
+
+
+def test_its_wheels_stand_while_it_hears_nothing_new(rig: Rig) -> None:
+    rig.run(30)
+    rig.node.behind_s = 0.26
+    deaf = rig.run(3)
+    assert stands(deaf[:5])
+    assert of(deaf, "move") == []
+    rig.node.behind_s = 0.0
+    assert stands(rig.run(1, None)), "until it has heard that there is no emergency"
+    assert len(of(rig.run(30), "move")) > 5
+
+
+def test_its_wheels_stand_after_a_lost_connection_until_it_hears_the_run_s_state(rig: Rig) -> None:
+    """An emergency stop that was sent meanwhile never comes."""
+    rig.run(30)
+    rig.node.losses += 1
+    assert stands(rig.run(1, None))
+    assert len(of(rig.run(30), "move")) > 5
+
+
+def test_without_a_server_it_gives_its_move_up_if_the_experiment_says_so(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, without_server="stop")
+    rig.run(30)
+    while not isinstance(rig.agent.activity, Moving):
+        rig.run(0.1)
+    rig.node.behind_s = 1.0
+    silent = rig.run(5.2, None)
+    assert stands(silent)
+    assert of(silent, "move") == []
+    assert [event.name for event in of(silent, "event")] == ["server_lost"]
+    rig.node.behind_s = 0.0
+    assert len(of(rig.run(30), "move")) > 5
+
+
+def test_it_tells_when_it_stands_for_a_pause_and_when_it_may_go_on(rig: Rig) -> None:
+    rig.run(30)
+    paused = rig.run(10, pb.RunState.PAUSED)
+    assert [event.text for event in of(paused, "event")] == ["stands: the run is paused"]
+    assert [event.name for event in of(rig.run(1), "event")] == ["resumed"]
 
 
 def test_it_stands_when_the_conductor_falls_silent(rig: Rig) -> None:

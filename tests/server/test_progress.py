@@ -12,7 +12,7 @@ from rich.console import Console
 
 from server.conductor.carrier import SimulatedCarrier
 from server.conductor.conductor import Conductor
-from server.progress import RunProgress, print_summary, times
+from server.progress import RunProgress, print_summary, span, times
 from server.reporter import Reporter
 from swarm.config.experiment import Experiment
 from swarm.messages.topics import Topic
@@ -76,6 +76,13 @@ def test_the_bar_counts_what_the_trial_waits_for(tmp_path: Path) -> None:
 )
 def test_a_laboratory_s_speed_is_not_0(factor: float, said: str) -> None:
     assert times(factor) == said
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"), [(16.2, "16 s"), (119.0, "119 s"), (754.0, "13 min"), (5400.0, "1.5 h")]
+)
+def test_a_short_run_does_not_take_0_h(seconds: float, said: str) -> None:
+    assert span(seconds) == said
 
 
 def test_the_summary_says_what_to_do_next(capsys: pytest.CaptureFixture[str]) -> None:

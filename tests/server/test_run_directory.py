@@ -37,10 +37,9 @@ def test_without_a_path_runs_are_numbered(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_the_experiment_is_kept_byte_for_byte(tmp_path: Path) -> None:
-    file = tmp_path / "mine.toml"
-    file.write_bytes(b"# \xc3\xa4\r\n[run]\n")
-    copy = RunDirectory.create(tmp_path / "new" / "run", "x").keep_experiment(file)
-    assert copy.read_bytes() == file.read_bytes()
+    text = b"# \xc3\xa4\r\n[run]\n"
+    copy = RunDirectory.create(tmp_path / "new" / "run", "x").keep_experiment(text)
+    assert copy.read_bytes() == text
     assert copy.name == "experiment.toml"
 
 

@@ -12,9 +12,10 @@ import shutil
 import threading
 import zipfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from textwrap import indent
+from typing import Any
 
 import asyncssh
 
@@ -101,10 +102,23 @@ class Boards:
         self.commands.append(process.command)
         pipe = asyncio.subprocess.PIPE
         shell = await asyncio.create_subprocess_shell(process.command, stdin=pipe, stdout=pipe, stderr=pipe)
-        out, errors = await shell.communicate(await process.stdin.read())
-        process.stdout.write(out)
-        process.stderr.write(errors)
-        process.exit(shell.returncode or 0)
+        assert shell.stdin
+        listening = asyncio.create_task(_passed_on(process.stdin, shell.stdin))
+        listening.add_done_callback(lambda done: shell.stdin.close())  # type: ignore[union-attr] # noqa: ARG005
+        try:
+            await _passed_on(shell.stdout, process.stdout)
+            await _passed_on(shell.stderr, process.stderr)
+            process.exit(await shell.wait())
+        finally:
+            listening.cancel()
+            await shell.communicate()
+
+
+async def _passed_on(source: Any, sink: Any) -> None:
+    """Bytes as they come, until their end; whoever was to get them may be gone."""
+    with suppress(ConnectionError):
+        while piece := await source.read(65_536):
+            sink.write(piece)
 
 
 def new_key() -> asyncssh.SSHKey:

@@ -13,7 +13,7 @@ import zenoh
 
 from swarm.access.credentials import zenoh_values
 from swarm.access.keyring import Issued, Keyring
-from swarm.access.zenoh_rules import limits
+from swarm.access.zenoh_limits import hub_limits
 from swarm.config.laboratory import Laboratory
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from tests.support.endpoints import free_endpoint
@@ -47,7 +47,7 @@ class CertifiedLaboratory:
 
     def hub(self) -> Session:
         """The hub of a server, as `swarm-server` opens it."""
-        return Session(self.settings("server", hub=True, limits=limits(self.robots)))
+        return Session(self.settings("server", hub=True, limits=hub_limits(self.robots)))
 
     def client(self, identity: str) -> zenoh.Session:
         """A session of Zenoh's own; without certificate if the identity is empty."""

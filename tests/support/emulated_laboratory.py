@@ -64,7 +64,7 @@ class EmulatedLaboratory:
 
     def start(self, *words: object, inside: Sequence[str] = ()) -> subprocess.Popen[bytes]:
         """A command of ours, perhaps on another machine."""
-        command = [*inside, sys.executable, "-m", *map(str, words)]
+        command = [*inside, sys.executable, "-m", *map(str, words), "--insecure"]
         output = self._stack.enter_context((self.directory / f"{words[0]}.txt").open("ab"))
         process = subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=subprocess.STDOUT)
         self._stack.enter_context(process)
@@ -91,7 +91,7 @@ class EmulatedLaboratory:
         return self.start("robot_agent", *words, inside=inside)
 
     def session(self) -> Session:
-        return self._stack.enter_context(Session(SessionSettings(self.endpoint)))
+        return self._stack.enter_context(Session(SessionSettings(self.endpoint, insecure=True)))
 
     def operator(self) -> Operator:
         return Operator(self.session())
@@ -128,7 +128,7 @@ class EmulatedLaboratory:
     def _emulate(self) -> None:
         identity = RunIdentity.of(self._experiment, 0)
         epoch = time.time_ns()
-        with Session(SessionSettings(self.endpoint)) as session:
+        with Session(SessionSettings(self.endpoint, insecure=True)) as session:
             claim(session, Presence("emulator", "robots", "here", epoch, str(identity.fingerprint)))
             run_id = agreed_run(session, identity, unix_clock())
             node = LiveNode(session, unix_clock(), 0.1, epoch, run_id)

@@ -49,9 +49,9 @@ class Laboratory:
         named = () if "--resume" in options else (file or self.file,)
         return self._started("server", *named, "--listen", self.endpoint, *given, *options)
 
-    def track(self) -> subprocess.Popen[str]:
+    def track(self, *options: object) -> subprocess.Popen[str]:
         """`tracker-bridge`."""
-        return self._started("tracker_bridge", self.file, "--connect", self.endpoint)
+        return self._started("tracker_bridge", self.file, "--connect", self.endpoint, *options)
 
     def agent(self, robot: str, *options: object, file: Path | None = None) -> subprocess.Popen[str]:
         """`robot-agent`, with its state in `state`."""

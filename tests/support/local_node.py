@@ -10,6 +10,7 @@ from swarm.messages.header import Header
 from swarm.messages.topics import Topic
 from swarm.runtime.lockstep import key_matches
 from swarm.runtime.node import Sequencer, Step
+from swarm.runtime.receipts import Receipts
 from swarm.runtime.subscription import Subscription
 
 M = TypeVar("M", bound=Message)
@@ -23,8 +24,9 @@ class LocalNode:
     def __init__(self) -> None:
         self.t_ns = 0
         self.behind_s = 0.0
+        self.losses = 0
         self.published: list[tuple[str, Any]] = []
-        self.keys_received: set[str] = set()
+        self.received = Receipts()
         self._subscriptions: list[tuple[str, Subscription[Any]]] = []
         self._sequencer = Sequencer()
 

@@ -51,4 +51,4 @@ def test_every_command_tells_the_version(words: tuple[str, ...]) -> None:
 
 def test_a_shell_completes_verbs() -> None:
     line = {"COMP_WORDS": "swarm re", "COMP_CWORD": "1", "_SWARM_COMPLETE": "complete_bash"}
-    assert asked("swarm", **line).split() == ["reproduce", "recover", "replay"]
+    assert asked("swarm", **line).split() == ["resume", "reproduce", "recover", "replay"]

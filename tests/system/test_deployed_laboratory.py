@@ -131,19 +131,19 @@ def test_from_nothing_to_a_run_that_is_over(laboratory: DeployedLaboratory) -> N
 
     (laboratory.directory / "no-camera.toml").write_text("what = 1\n")
     laboratory.write(MOVES + 1, of_r3='calibration = "no-camera.toml"\n')
-    second = laboratory.deploy("--interrupt")
+    second = laboratory.deploy()
     assert [machine["state"] for machine in second] == ["deployed"] * 3 + ["failed"], second
     assert second[3]["reason"].endswith("the release before runs again")
     assert laboratory.state(laboratory.robots[2], "swarm-agent@r3") == "active"
 
     laboratory.write(MOVES)
-    third = laboratory.deploy("--interrupt")
+    third = laboratory.deploy("--run")
     assert [machine["state"] for machine in third] == ["deployed"] * 3 + ["unchanged"], third
     assert [machine["copied"] for machine in third] == [[]] * 4
-    assert laboratory.deploy()[0]["state"] == "unchanged"
+    assert laboratory.deploy("--run")[0]["state"] == "unchanged"
     laboratory.emulate()
     reached = laboratory.swarm("lab", "check", *files, "--reach")["findings"]
-    assert {found["level"] for found in reached} == {"good"}, reached
+    assert not [found for found in reached if found["level"] == "bad"]
 
     until(lambda: laboratory.state(laboratory.server, "swarm-server") == "stopped")
     runs = sorted((laboratory.server.folder / "swarm" / "runs").iterdir())

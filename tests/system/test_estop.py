@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -24,6 +25,8 @@ from tests.support.operator import Operator, Order, all_are
 STANDS_WITHIN_S = 0.5
 ROBOTS, EMERGENCIES = 2, 50
 LOSS = 0.2
+PRECEDENCE = 10
+WITHOUT_PRECEDENCE = ["nice", "-n", str(PRECEDENCE)]
 PORT = 7447
 
 
@@ -76,10 +79,14 @@ def times_to_stand_s(laboratory: EmulatedLaboratory, operator: Operator) -> list
 def test_all_wheels_stand_in_time_fifty_times_of_fifty_although_a_fifth_of_the_packets_is_lost(
     tmp_path: Path, stack: ExitStack
 ) -> None:
-    """Under load: every core has a busy process beside ours."""
+    """The server's machine is busy on every core. Boards, robots and links have machines of their own, and in
+    their place precedence here.
+    """
+    os.nice(-PRECEDENCE)
+    stack.callback(os.nice, PRECEDENCE)
     star = Star("estop", ROBOTS, stack)
     laboratory = EmulatedLaboratory(tmp_path, stack, f"tcp/{star.hub_address(0)}:{PORT}", ROBOTS)
-    hub = inside(star.hub)
+    hub = [*inside(star.hub), *WITHOUT_PRECEDENCE]
     laboratory.serve(f"tcp/0.0.0.0:{PORT}", inside=hub)
     laboratory.track(f"tcp/127.0.0.1:{PORT}", inside=hub)
     laboratory.emulate()
@@ -90,7 +97,9 @@ def test_all_wheels_stand_in_time_fifty_times_of_fifty_although_a_fifth_of_the_p
     for link in range(1, ROBOTS + 1):
         star.lose(link, LOSS)
     for _ in available_cores():
-        busy = stack.enter_context(subprocess.Popen([sys.executable, "-c", "while True: pass"]))
+        busy = stack.enter_context(
+            subprocess.Popen([*WITHOUT_PRECEDENCE, sys.executable, "-c", "while True: pass"])
+        )
         stack.callback(busy.kill)
     took_s = [time_s for _ in range(EMERGENCIES) for time_s in times_to_stand_s(laboratory, operator)]
     print(f"worst {max(took_s):.3f} s, median {sorted(took_s)[len(took_s) // 2]:.3f} s of {len(took_s)}")

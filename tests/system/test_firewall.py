@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from swarm.messages import topics
+from swarm.runtime.receipts import read_receipts
 from tests.support.camera_runs import PLACES, camera_experiment_text
 from tests.support.swarm_runs import messages, run_server, write_experiment
 
@@ -20,7 +21,8 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def heard(run: Path, number: int) -> set[str]:
-    return set((run / "output" / "trial-000" / f"robots-{number}.keys").read_text().splitlines())
+    _, received = read_receipts(run / "output" / "trial-000" / f"robots-{number}.keys")
+    return {name.partition(" ")[0] for name in received}
 
 
 @pytest.mark.parametrize(("number", "robot"), list(enumerate(PLACES)))

@@ -13,12 +13,14 @@ import pytest
 from swarm.config.experiment import (
     ArenaSettings,
     BodySettings,
+    Experiment,
     LearningSettings,
     SimulationSettings,
     TrackerSettings,
     VisitSettings,
 )
 from swarm.config.toml_files import Between
+from swarm.errors import UserError
 from swarm.logs.check import check_run
 from tests.support.swarm_runs import run_server, write_experiment
 
@@ -37,8 +39,11 @@ NOT_ALONE = {"width_m", "height_m"}
 """The floor must hold the compartments: only those are smaller or larger here."""
 NEIGHBOURS = 4
 """On either side: each end is tried with eight others, in 246 of the 1,860 pairs."""
-MORE_THAN_A_MESSAGE = {("visits", "duration_s", 600), ("visits", "frames_per_s", 30)}
-"""18,000 frames of one visit: refused before anything starts."""
+REFUSED: tuple[set[Setting], ...] = (
+    {("visits", "duration_s", 600), ("visits", "frames_per_s", 30)},
+    {("tracker", "blackouts_per_hour", 600), ("tracker", "blackout_s", 60)},
+)
+"""Before anything starts: 18,000 frames in one message, and a robot that is never seen."""
 MOVES = 6
 
 
@@ -98,6 +103,12 @@ def test_settings_that_slow_robots_down_stop_none(setting: Setting, tmp_path: Pa
     check(tmp_path, setting)
 
 
+@pytest.mark.parametrize("pair", REFUSED, ids=["frames", "blackouts"])
+def test_what_can_only_fail_together_is_refused(pair: set[Setting], tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"small\.toml:\d+: "):
+        Experiment.load(write_experiment(tmp_path, text(*sorted(pair))))
+
+
 @pytest.mark.faults
 @pytest.mark.parametrize("setting", ends(), ids=named)
 def test_every_end_of_every_range_works(setting: Setting, tmp_path: Path) -> None:
@@ -113,7 +124,7 @@ def pairs() -> list[tuple[Setting, Setting]]:
         for distance in range(1, NEIGHBOURS + 1)
         for place, one in enumerate(ring)
     ]
-    return [pair for pair in neighbours if pair[0][:2] != pair[1][:2] and set(pair) != MORE_THAN_A_MESSAGE]
+    return [pair for pair in neighbours if pair[0][:2] != pair[1][:2] and set(pair) not in REFUSED]
 
 
 @pytest.mark.faults

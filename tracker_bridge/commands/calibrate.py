@@ -7,6 +7,7 @@ import csv
 from pathlib import Path
 
 from swarm.clock import unix_clock
+from swarm.config.changes import add_set_option
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from tracker_bridge.calibration import KnownPoint, calibrate
@@ -15,6 +16,7 @@ from tracker_bridge.listening import seen_at
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="whose [tracker] table")
+    add_set_option(parser)
     parser.add_argument("--points", type=Path, metavar="FILE.csv", help="lines of seen x,y,z and arena x,y")
     parser.add_argument("--body", default="", help="the body that is put at the places; any if not given")
     parser.add_argument("--at", action="append", default=[], metavar="X,Y", help="a known place, in metres")
@@ -32,7 +34,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _asked(arguments: argparse.Namespace) -> list[KnownPoint]:
     """Ask the person to put the body at each place, and look where the system sees it."""
-    experiment, points = Experiment.load(arguments.experiment), []
+    experiment, points = Experiment.load(arguments.experiment, arguments.set), []
     for text in arguments.at:
         place_m = _place(text)
         input(f"Put {arguments.body or 'the body'} at ({place_m[0]:g}, {place_m[1]:g}) m, then press Enter: ")

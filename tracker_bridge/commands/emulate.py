@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from swarm.clock import unix_clock
+from swarm.config.changes import add_set_option
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 from swarm.runtime.process import add_protection_arguments, session_settings
@@ -30,6 +31,7 @@ SYSTEMS = ("vicon", "natnet")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("system", choices=SYSTEMS, help="which tracking system to play")
     parser.add_argument("experiment", type=Path, metavar="EXPERIMENT.toml", help="robots and [tracker] table")
+    add_set_option(parser)
     parser.add_argument("--to", default="127.0.0.1", metavar="HOST", help="vicon: who gets it (%(default)s)")
     parser.add_argument("--version", default="3.0", help="natnet: the version to speak (%(default)s)")
     parser.add_argument("--rate", type=float, default=100.0, help="frames a second (%(default)s)")
@@ -43,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Serve until the time is over; without a recording or a run, robots drive in circles."""
     leave_on_signals()
-    experiment = Experiment.load(arguments.experiment)
+    experiment = Experiment.load(arguments.experiment, arguments.set)
     with ExitStack() as stack:
         emulator = stack.enter_context(closing(_emulator(arguments, experiment)))
         motion = _motion(arguments, experiment, stack)

@@ -15,8 +15,7 @@ from robot_agent.vision.frames import Frame
 from swarm.clock import NS_PER_S
 from swarm.geometry import Pose, wrap_angle_rad
 from swarm.messages import swarm_pb2 as pb
-from swarm.messages import topics
-from swarm.runtime.node import Node
+from swarm.runtime.subscription import Subscription
 
 BUILT_IN_MODEL = CameraModel(320, 240, math.radians(53.0), radial=(-0.08, 0.01), gamma=2.2)
 """An e-puck's camera with a field of view mid-way between the published values."""
@@ -36,13 +35,12 @@ class SimulatedRobotCamera:
         model: CameraModel,
         conditions_name: str,
         truth_at: Callable[[int], Pose],
-        node: Node,
-        robot: str,
+        views: Subscription[pb.View],
         rng: np.random.Generator,
     ) -> None:
         self._camera = SimulatedCamera(model, conditions(conditions_name), rng)
         self._truth_at = truth_at
-        self._views = node.subscribe(topics.VIEW, robot)
+        self._views = views
         self._view: pb.View | None = None
         self._shown_ns = -1
         self._velocities: list[tuple[float, float]] = []

@@ -83,4 +83,5 @@ class SimulatedDriver:
         parts = self._parts
         light = parts.experiment.camera.conditions
         generator = parts.generator("camera")
-        return SimulatedRobotCamera(model, light, self.body.truth_at, parts.node, parts.robot.id, generator)
+        views = parts.node.subscribe(topics.VIEW, parts.robot.id)
+        return SimulatedRobotCamera(model, light, self.body.truth_at, views, generator)

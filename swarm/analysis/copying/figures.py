@@ -7,6 +7,7 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
@@ -28,12 +29,14 @@ from swarm.markdown import counted
 
 PERFECT, WRONG, UNJUDGED = COLOURS[0], COLOURS[1], GREY
 """Blue, orange and grey: told apart by everybody."""
-CAPTION_LETTERS, CAPTION_LINES = 44, 2
+CAPTION_LETTERS, CAPTION_LINES = 38, 2
 """What fits under half of an original with its copy."""
 NOTE_LETTERS_AN_INCH = 15
 """Of a note's small letters."""
-PATH_WIDTH_IN, NOTE_SPACE_IN = 2.9, 0.4
-"""Inches: of each path, and beside them all."""
+PATH_WIDTH_IN, NOTE_SPACE_IN, WORDS_IN = 2.9, 0.4, 1.9
+"""Inches: of each path, beside them all, and above and below them."""
+CASE_HEIGHT_IN, NOTE_HEIGHT_IN = 4.3, 0.6
+"""Inches: of an original with its copy, whose captions take four lines, and of the note below them all."""
 _SEEN = "#1a1a1a"
 _R_NOTE = "Moves are drawn from the ring on, a cell a move. R as in equation 4, after the last replay."
 _SEEN_NOTE = (
@@ -78,7 +81,8 @@ _WITH = {
 
 def plot_paths(paths: Sequence[LoggedPath], title: str) -> Figure:
     """Remembered paths side by side with their R and replays."""
-    figure = Figure(figsize=(PATH_WIDTH_IN * len(paths) + NOTE_SPACE_IN, 4.4), layout="constrained")
+    size = PATH_WIDTH_IN * len(paths) + NOTE_SPACE_IN, PATH_WIDTH_IN + WORDS_IN
+    figure = Figure(figsize=size, layout="constrained")
     figure.suptitle(title, fontsize=13, fontweight="bold", x=0.01, ha="left")
     columns = figure.subplots(1, len(paths), squeeze=False)[0]
     lines = [places(path.moves) for path in paths]
@@ -116,12 +120,13 @@ def plot_copies(paths: Sequence[LoggedPath], copying: Copying) -> Figure:
     """What the demonstrator really did on the left, what was perceived on the right, two copies a row."""
     columns = min(len(paths), 2)
     rows = -(-len(paths) // columns)
-    figure = Figure(figsize=(5.8 * columns, 0.75 + 3.7 * rows), layout="constrained")
+    figure = Figure(figsize=(5.8 * columns, CASE_HEIGHT_IN * rows + NOTE_HEIGHT_IN), layout="constrained")
     figure.suptitle("Original and perceived copy", fontsize=13, fontweight="bold", x=0.01, ha="left")
-    cases = figure.subfigures(rows, columns, squeeze=False, wspace=0.04).ravel()
-    for case, path in zip(cases, paths, strict=False):
+    heights = [CASE_HEIGHT_IN] * rows + [NOTE_HEIGHT_IN]
+    *cases, note = figure.subfigures(rows + 1, columns, squeeze=False, wspace=0.04, height_ratios=heights)
+    for case, path in zip(np.ravel(cases), paths, strict=False):
         _draw_case(case, path, copying.seen.get(path, ()))
-    figure.supxlabel(_wrapped_note(_SEEN_NOTE, figure), x=0.01, ha="left", fontsize=8.5, color=GREY)
+    note[0].text(0.01, 0.5, _wrapped_note(_SEEN_NOTE, figure), va="center", fontsize=8.5, color=GREY)
     return figure
 
 

@@ -60,8 +60,10 @@ def _install_release(board: Board, request: Request) -> None:
     about = {
         "services": request["starts"],
         "experiment": request["experiment"],
+        "extras": request["extras"],
         "files": digests,
         "virtual_environment": request["program"],
+        "build": request["build"],
         **versions,
     }
     (place / COMPLETE).write_text(json.dumps(about))

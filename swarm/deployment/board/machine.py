@@ -8,7 +8,6 @@ import shutil
 import struct
 import subprocess
 import sys
-import time
 from contextlib import suppress
 from importlib import metadata
 from pathlib import Path
@@ -39,7 +38,6 @@ def look(board: Board, request: dict[str, Any]) -> dict[str, Any]:
         "free_bytes": shutil.disk_usage(
             next(p for p in (board.root, *board.root.parents) if p.exists())
         ).free,
-        "t_ns": time.time_ns(),
     }
 
 

@@ -27,13 +27,14 @@ class Systemd:
         known = settings.read_bytes() if settings.exists() else b""
         if CHRONY_FOLDER.is_dir() and clock.read_bytes() != known:
             run([*self._sudo, "install", "-m", "644", str(clock), str(settings)])
-            self._ask("restart", "chrony")
+            self._ask("try-restart", "chrony")
 
     def restart(self, name: str) -> None:
-        """Start a service anew, also after the machine's next start."""
+        """Start a service anew, also after the machine's next start; what becomes of it its state tells."""
         self._ask("enable", "--quiet", name)
         self._ask("reset-failed", "--quiet", name)
-        self._ask("restart", "--no-block", name)
+        words = [*self._sudo, "systemctl", "restart", name]
+        subprocess.run(words, capture_output=True, check=False, stdin=subprocess.DEVNULL)
 
     def stop(self, name: str) -> None:
         """End a service for good."""

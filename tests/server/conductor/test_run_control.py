@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from google.protobuf.message import Message
 
+from server.conductor.carrier import Operator
 from server.conductor.prompts import Prompts
 from server.conductor.run_control import RunControl
 from server.reporter import Reporter
@@ -118,6 +119,16 @@ def test_a_latch_is_in_force_whatever_stands_in_its_file(rig: Rig) -> None:
 def test_a_stopped_trial_has_ended(rig: Rig) -> None:
     assert rig.orders(Order.STOP).accepted
     assert (rig.phase, rig.control.stopped) == ("ENDED", "anna@lab (why)")
+
+
+def test_a_person_is_asked_on_the_terminal_in_the_log_and_by_a_prompt(rig: Rig) -> None:
+    shown: list[str] = []
+    Operator(Reporter(rig), shown.append, rig.prompts).relocate("b", PLACE, "visit 1 to a")
+    asked = "please carry b to x 1.00 m, y 1.00 m, heading 0.00 rad: visit 1 to a"
+    assert shown == [f"{asked} (prompt 1)"]
+    assert [message.text for key, message in rig.said if key == "server/event"] == [asked]
+    ((prompt),) = rig.prompts.messages()
+    assert (prompt.number, prompt.robot, prompt.text, prompt.x_m) == (1, "b", asked, 1.0)
 
 
 def test_a_prompt_is_done_when_the_robot_s_own_pose_says_so(rig: Rig) -> None:

@@ -107,4 +107,7 @@ def test_others_do_not_take_part_and_the_reason_is_told_once(
 def test_a_stranger_who_makes_up_epochs_does_not_fill_the_log(door: Door) -> None:
     for epoch in range(2 * MOST_SAID):
         assert not door.accepts("robot/r0/move", epoch + 100)
+    assert len(door.told) == 1
+    for host in range(2 * MOST_SAID):
+        assert not door.admission.admits(Presence("robot", "ghost", f"host{host}", 7, str(RUN)))
     assert len(door.told) == MOST_SAID

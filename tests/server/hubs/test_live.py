@@ -48,9 +48,16 @@ class Laboratory:
             epoch=1,
         )
 
+    @property
+    def identity(self) -> str:
+        return str(self._identity.fingerprint)
+
+    def session(self) -> Session:
+        return self._stack.enter_context(Session(SessionSettings(self._endpoint)))
+
     def joins(self, kind: str, name: str, epoch: int = 1, identity: str = "") -> Session:
-        session = self._stack.enter_context(Session(SessionSettings(self._endpoint)))
-        claim(session, Presence(kind, name, "board", epoch, identity or str(self._identity.fingerprint)))
+        session = self.session()
+        claim(session, Presence(kind, name, "board", epoch, identity or self.identity))
         return session
 
     def hears_until(self, condition: Callable[[], bool]) -> dict[str, list[bytes]]:
@@ -140,6 +147,28 @@ def test_who_goes_and_comes_back_is_told_in_one_line_each(laboratory: Laboratory
     while "back" not in laboratory.events(heard):
         for item in laboratory.hub.gather().items:
             heard.setdefault(item.key, []).append(item.payload)
+
+
+def test_a_second_one_under_a_name_waits_until_the_first_has_gone(laboratory: Laboratory) -> None:
+    laboratory.joins("tracker", "bridge")
+    first = laboratory.joins("robot", "r0")
+    laboratory.joins("robot", "r1")
+    laboratory.hub.start()
+    copied = laboratory.session()
+    copied.declare_alive(Presence("robot", "r0", "cellar", 9, laboratory.identity).key)
+    laboratory.hears_until(lambda: len(laboratory.said) == 1)
+    assert laboratory.said == ["r0 is there already, on host board: one on host cellar is left out"]
+    moves = copied.publisher("robot/r0/move", Delivery.EVERY)
+    own = first.publisher("robot/r0/move", Delivery.EVERY)
+    moves.put(b"copied", attachment=Header(9, 1, 0).pack())
+    own.put(b"own", attachment=Header(1, 1, 0).pack())
+    heard: dict[str, list[bytes]] = {}
+    while "robot/r0/move" not in heard:
+        for item in laboratory.hub.gather().items:
+            heard.setdefault(item.key, []).append(item.payload)
+    assert heard["robot/r0/move"] == [b"own"]
+    first.close()
+    laboratory.hears_until(lambda: laboratory.said[-1] == "r0 is back, on host cellar")
 
 
 def test_who_is_not_admitted_is_missing_and_its_messages_are_not_taken_in(laboratory: Laboratory) -> None:

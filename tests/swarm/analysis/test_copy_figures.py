@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import polars as pl
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from swarm.analysis.analyze import Analysis, Request, analyze
 from swarm.analysis.copying.drawing import LEAST_SIDE, moves_text, places, square_around
@@ -168,6 +171,24 @@ def test_a_figure_has_a_panel_for_each_path_and_two_for_each_copy() -> None:
     paths = [path(1, 1, (SE, SE, SE)), path(2, 5, (NW,)), path(3, 2)]
     assert len(plot_paths(paths, "paths").axes) == 3
     assert len(plot_copies(paths[:2], copying(*paths)).axes) == 4
+
+
+def misplaced(figure: Figure) -> list[tuple[str, ...]]:
+    """The texts of a figure that lie over each other, or beyond its edge."""
+    figure.draw_without_rendering()
+    texts = [text for text in figure.findobj(Text) if isinstance(text, Text) and text.get_text()]
+    boxes = [(text.get_text(), text.get_window_extent()) for text in texts]
+    width_px, height_px = figure.bbox.size
+    beyond = [(text,) for text, box in boxes if box.x1 > width_px or box.y1 > height_px or min(box.min) < 0]
+    over = [(a, b) for (a, one), (b, other) in itertools.combinations(boxes, 2) if one.overlaps(other)]
+    return [*beyond, *over]
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_every_text_of_a_figure_has_its_own_place_in_it(count: int) -> None:
+    paths = [path(number, number, (SE, SE, S, E, NW) * number) for number in range(1, count + 1)]
+    drawn = [plot_paths(paths, "Paths enacted most often"), plot_copies(paths, copying(*paths))]
+    assert [misplaced(figure) for figure in drawn] == [[], []]
 
 
 def test_r_begins_at_1_when_a_path_is_remembered_and_holds_to_the_end() -> None:

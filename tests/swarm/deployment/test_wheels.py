@@ -15,8 +15,9 @@ Name: swarm-runtime
 Version: 3.0
 Requires-Dist: eclipse-zenoh<2,>=1.10.2
 Requires-Dist: numpy<3,>=2.2
-Requires-Dist: opencv-python-headless>=4.10
+Requires-Dist: opencv-python-headless>=4.10; extra == "vision"
 Requires-Dist: spidev<4,>=3.6; extra == "spi"
+Requires-Dist: swarm-runtime[vision]; extra == "lab"
 Requires-Dist: small-mcap[zstd]>=0.16; extra == "lab"
 """
 
@@ -29,16 +30,17 @@ def wheel_in(directory: Path) -> Path:
 
 
 def test_a_machine_with_nothing_gets_everything(tmp_path: Path) -> None:
-    needed = ["eclipse-zenoh<2,>=1.10.2", "numpy<3,>=2.2", "opencv-python-headless>=4.10"]
+    needed = ["eclipse-zenoh<2,>=1.10.2", "numpy<3,>=2.2"]
     assert requirements(wheel_in(tmp_path), [], {}) == (needed, False)
-    assert requirements(wheel_in(tmp_path), ["lab"], {})[0] == [*needed, "small-mcap[zstd]>=0.16"]
+    more = ["opencv-python-headless>=4.10", "small-mcap[zstd]>=0.16"]
+    assert requirements(wheel_in(tmp_path), ["lab"], {})[0] == [*needed, *more], "an extra may name another"
 
 
 def test_debian_13_supplies_what_is_new_enough_and_debian_12_does_not(tmp_path: Path) -> None:
     trixie = {"numpy": "2.2.4", "opencv-python-headless": "4.10.0", "spidev": "3.6"}
-    assert requirements(wheel_in(tmp_path), ["spi"], trixie) == (["eclipse-zenoh<2,>=1.10.2"], True)
+    assert requirements(wheel_in(tmp_path), ["spi", "vision"], trixie) == (["eclipse-zenoh<2,>=1.10.2"], True)
     bookworm = {"numpy": "1.24.2", "opencv-python-headless": "4.6.0", "spidev": ""}
-    needed, uses_system = requirements(wheel_in(tmp_path), ["spi"], bookworm)
+    needed, uses_system = requirements(wheel_in(tmp_path), ["spi", "vision"], bookworm)
     assert (len(needed), uses_system) == (4, False)
 
 

@@ -137,7 +137,11 @@ def test_every_figure_can_be_made(tmp_path: Path) -> None:
         ({"runs": 10**9}, "would need .* GB of memory"),
         ({"steps": 10**15}, "would need .* GB of memory"),
         ({"scheduler": "cloud"}, "unknown scheduler 'cloud'; known: processes, dask"),
-        ({"scheduler": "tcp://127.0.0.1:1"}, "no Dask scheduler answers at tcp://127.0.0.1:1"),
+        pytest.param(  # Dask tries for 10 s.
+            {"scheduler": "tcp://127.0.0.1:1"},
+            "no Dask scheduler answers at tcp://127.0.0.1:1",
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_a_bad_call_says_why_and_leaves_nothing(tmp_path: Path, asked: dict[str, Any], message: str) -> None:

@@ -1,0 +1,1 @@
+"""A stretch of one robot's learning as a film: the arena, its camera, its curve."""
