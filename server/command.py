@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 import secrets
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -21,8 +21,9 @@ from server.processes.environment import (
     simulated,
 )
 from server.progress import RunProgress, print_summary
-from server.run import Run
+from server.run import Run, Simulation
 from server.run_directory import RunDirectory
+from server.trial import TrialResult
 from swarm.access.zenoh_limits import hub_limits
 from swarm.checkup.checkup import experiment_findings, findings
 from swarm.checkup.finding import Level, require_good
@@ -52,31 +53,21 @@ def conduct(asked: argparse.Namespace) -> None:
     leave_on_signals()
     plan = _resumed(asked) if asked.resume else _begun(asked)
     with RunProgress(plan.experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
-        trials: Sequence[int] = range(plan.experiment.run.trials)
-        environment: Environment = partial(
-            simulated, plan.experiment, asked.speed, progress.warn, emulate=asked.emulate
-        )
-        if asked.listen:
-            robots = [robot.id for robot in plan.experiment.robot]
-            settings = session_settings(asked, asked.listen, hub=True, limits=hub_limits(robots))
-            session = open_session.enter_context(Session(settings))
-            manager = ServiceManager.of_environment()
-            manager.ready()
-            trials = [plan.trial]
-            _warn_of_bad(plan.experiment, progress)
-            environment = partial(laboratory, plan.experiment, session, progress.warn, manager.going_on)
+        environment = _environment(plan, asked, progress, open_session)
         directory = plan.directory or RunDirectory.create(asked.out, plan.experiment.run.name)
         run = Run(
             plan.experiment,
             plan.file,
             directory,
             environment,
-            trials,
+            plan.trials,
             progress,
             plan.run_id,
             plan.changes,
-            min(asked.jobs, len(trials)),
+            min(asked.jobs, len(plan.trials)),
             asked.scheduler,
+            plan.simulation,
+            dict(plan.results),
         )
         summary = run.run()
     if asked.json:
@@ -91,11 +82,29 @@ class Plan:
 
     experiment: Experiment
     file: Path
-    trial: int
+    trials: Sequence[int]
     run_id: str
     changes: Sequence[str]
     """What `--set` says in place of the file's values."""
+    simulation: Simulation | None
+    results: Mapping[int, TrialResult] = field(default_factory=dict)
     directory: RunDirectory | None = None
+
+
+def _environment(
+    plan: Plan, asked: argparse.Namespace, progress: RunProgress, open_session: ExitStack
+) -> Environment:
+    """What the trials are played on."""
+    if plan.simulation:
+        how = plan.simulation
+        return partial(simulated, plan.experiment, how.speed, progress.warn, emulate=how.emulate)
+    robots = [robot.id for robot in plan.experiment.robot]
+    settings = session_settings(asked, asked.listen, hub=True, limits=hub_limits(robots))
+    session = open_session.enter_context(Session(settings))
+    manager = ServiceManager.of_environment()
+    manager.ready()
+    _warn_of_bad(plan.experiment, progress)
+    return partial(laboratory, plan.experiment, session, progress.warn, manager.going_on)
 
 
 def _begun(asked: argparse.Namespace) -> Plan:
@@ -107,7 +116,11 @@ def _begun(asked: argparse.Namespace) -> Plan:
     _check(asked, experiment)
     joinable = asked.listen or asked.speed
     run_id = secrets.token_hex(RUN_ID_BYTES) if joinable else ""
-    return Plan(experiment, asked.experiment, asked.trial or 0, run_id, changes)
+    if asked.listen:
+        return Plan(experiment, asked.experiment, [asked.trial or 0], run_id, changes, None)
+    simulation = Simulation(asked.speed, asked.emulate)
+    trials = range(experiment.run.trials)
+    return Plan(experiment, asked.experiment, trials, run_id, changes, simulation)
 
 
 def _changes(asked: argparse.Namespace) -> list[str]:
@@ -148,16 +161,20 @@ def _refuse_live_jobs(asked: argparse.Namespace) -> None:
 
 
 def _resumed(asked: argparse.Namespace) -> Plan:
-    own = ("experiment", "set", "out", "seed", "moves", "trial")
+    own = ("experiment", "set", "out", "seed", "moves", "trial", "trials", "speed")
     given = [name for name in own if getattr(asked, name) is not None]
     if given:
         raise UserError(f"--resume goes on with a run as it was begun: leave out {', '.join(given)}")
-    if not asked.listen:
-        raise UserError("--resume waits for the robots of a laboratory: say where with --listen")
-    _refuse_speed(asked)
     run = InterruptedRun.read(asked.resume)
+    if run.simulation and asked.listen:
+        raise UserError(f"{asked.resume}: was simulated; leave out --listen")
+    if not run.simulation and not asked.listen:
+        raise UserError(f"{asked.resume}: its robots are a laboratory's; say with --listen where to wait")
     require_good(asked.resume, [writable("--resume", asked.resume)])
-    return Plan(run.experiment, run.file, run.trial, run.run_id, run.changes, run.directory)
+    experiment = run.experiment.changed(processes=asked.processes)
+    return Plan(
+        experiment, run.file, run.trials, run.run_id, run.changes, run.simulation, run.results, run.directory
+    )
 
 
 def _warn_of_bad(experiment: Experiment, progress: RunProgress) -> None:
@@ -181,6 +198,13 @@ def _parser() -> OneLineParser:
     parser.add_argument("--seed", type=arguments.seed, metavar="N", help="in place of the experiment's")
     parser.add_argument("--moves", type=arguments.moves, metavar="N", help="in place of the experiment's")
     parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    parser.add_argument(
+        "--resume",
+        type=arguments.place,
+        metavar="RUN_DIRECTORY",
+        help="go on with a run whose server ended before it was complete; with --listen on a laboratory's "
+        "robots, whose agents need no restart",
+    )
     simulation = parser.add_argument_group("simulation")
     simulation.add_argument(
         "--trials", type=arguments.trials, metavar="N", help="in place of the experiment's"
@@ -219,12 +243,6 @@ def _parser() -> OneLineParser:
         type=arguments.trial,
         metavar="N",
         help="a laboratory runs one trial at a time, from 0; the agents are started with the same number",
-    )
-    real.add_argument(
-        "--resume",
-        type=arguments.place,
-        metavar="RUN_DIRECTORY",
-        help="go on with a run whose server ended before its trial did; the agents need no restart",
     )
     add_protection_arguments(parser)
     return parser

@@ -1,4 +1,4 @@
-"""A run whose server ended before its trial did: what `swarm-server --resume` goes on from."""
+"""A run whose server ended before it was complete: what `--resume` goes on from."""
 
 from __future__ import annotations
 
@@ -7,21 +7,28 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from server.run import Simulation
 from server.run_directory import EXPERIMENT, MANIFEST, RunDirectory
+from server.trial import TrialResult
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
 
 
 @dataclass(frozen=True)
 class InterruptedRun:
-    """The experiment as it was run, and what tells this run from all others."""
+    """The experiment as it was run, what tells this run from all others, and what is done of it."""
 
     directory: RunDirectory
     experiment: Experiment
     run_id: str
-    trial: int
+    trials: tuple[int, ...]
+    """All of the run."""
+    results: dict[int, TrialResult]
+    """Of those that are complete."""
     changes: tuple[str, ...]
     """What `--set` said; the experiment has it."""
+    simulation: Simulation | None
+    """None for a run on the robots of a laboratory."""
 
     @property
     def file(self) -> Path:
@@ -29,22 +36,22 @@ class InterruptedRun:
 
     @classmethod
     def read(cls, path: Path) -> InterruptedRun:
-        """UserError for what is no directory of a run that can go on, or if its server still records."""
+        """UserError for what is no directory of a run that can go on."""
         manifest = _manifest(path)
         try:
-            (trial,) = {int(record["trial"]) for record in manifest["trials"]}
+            trials = tuple(dict.fromkeys(int(record["trial"]) for record in manifest["trials"]))
             (seed,) = {int(record["seed"]) for record in manifest["trials"]}
-            states = {str(record["state"]) for record in manifest["trials"]}
             run_id, moves = str(manifest["run_id"]), int(manifest["moves"])
-            changes = tuple(map(str, manifest.get("set", ())))
-        except (KeyError, TypeError, ValueError) as error:
-            raise UserError(f"{path / MANIFEST}: is not of a single trial that others can join") from error
-        if not run_id:
-            raise UserError(f"{path}: was simulated; a simulation is not resumed, it is run again")
-        if states == {"complete"}:
-            raise UserError(f"{path}: trial {trial} is complete; there is nothing to resume")
+            simulation, changes = manifest["simulation"], tuple(map(str, manifest["set"]))
+            results = {int(trial): TrialResult(**found) for trial, found in manifest["results"].items()}
+            simulated = None if simulation is None else Simulation(**simulation)
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
+            raise UserError(f"{path / MANIFEST}: is not of a run that this version can go on with") from error
+        if not set(trials) - set(results):
+            raise UserError(f"{path}: all trials of the run are complete; there is nothing to resume")
         experiment = Experiment.load(path / EXPERIMENT).changed(seed=seed, moves=moves)
-        return cls(RunDirectory.reopened(path, trial), experiment, run_id, trial, changes)
+        directory = RunDirectory(path, is_new=False)
+        return cls(directory, experiment, run_id, trials, results, changes, simulated)
 
 
 def _manifest(path: Path) -> dict[str, Any]:

@@ -23,6 +23,15 @@ from swarm.config.experiment import Experiment
 from swarm.errors import UserError, in_words
 
 
+@dataclass(frozen=True)
+class Simulation:
+    """How a run is simulated."""
+
+    speed: float | None
+    """So many times as fast as life; None for lockstep."""
+    emulate: bool
+
+
 @dataclass
 class Run:
     """Everything that a run needs; `run` does it and returns what `--json` prints."""
@@ -42,8 +51,10 @@ class Run:
     """Trials at a time; more than one on simulated robots in lockstep alone."""
     scheduler: str = "processes"
     """Where those are played, if there are several at a time."""
+    simulation: Simulation | None = None
+    """How it is simulated; None on the robots of a laboratory."""
     results: dict[int, TrialResult] = field(default_factory=dict)
-    """By trial."""
+    """By trial; those that an earlier server completed are not repeated."""
     versions: dict[str, str] = field(default_factory=versions)
 
     def run(self) -> dict[str, Any]:
@@ -54,12 +65,13 @@ class Run:
     def _held(self) -> dict[str, Any]:
         began = time.monotonic()
         kept = self._begin()
+        to_do = [trial for trial in self.trials if trial not in self.results]
         state = "interrupted"
         try:
-            state = self._play(kept)
+            state = self._play(to_do, kept)
         finally:
             self._write_manifest(state)
-            summary = self._summary(time.monotonic() - began)
+            summary = self._summary(to_do, time.monotonic() - began)
             self.directory.write_json("run.json", {**summary, **self._circumstances()})
             self.directory.release()
         return summary
@@ -69,19 +81,28 @@ class Run:
         try:
             self.directory.reserve()
             kept = self.directory.keep_experiment(experiment_bytes(self.file, self.changes))
+            self.directory.close_logs()
             self._write_manifest("running")
         except OSError as error:
             self.directory.remove()
             raise UserError(f"{self.directory.path}: {in_words(error)}") from error
         return kept
 
-    def _play(self, file: Path) -> str:
+    def _play(self, trials: Sequence[int], file: Path) -> str:
         """One after the other, or several at a time; what became of them."""
-        player = TrialPlayer(self.experiment, file, self.changes, self.directory, self.versions, self.run_id)
+        player = TrialPlayer(
+            self.experiment,
+            file,
+            self.changes,
+            self.directory,
+            self.versions,
+            self.run_id,
+            is_repeatable=self.simulation is not None,
+        )
         if self.jobs > 1:
-            play_together(player, self.trials, self.scheduler, self.jobs, self._note_and_show)
+            play_together(player, trials, self.scheduler, self.jobs, self._note_and_show)
             return "complete"
-        for trial in self.trials:
+        for trial in trials:
             self.progress.begin(trial)
             player.play(trial, self.environment, self.progress.show, self._note)
             if self.results[trial].stopped:
@@ -90,24 +111,26 @@ class Run:
 
     def _note(self, trial: int, result: TrialResult) -> None:
         self.results[trial] = result
+        if result.complete:
+            self._write_manifest("running")
 
     def _note_and_show(self, trial: int, result: TrialResult) -> None:
         self._note(trial, result)
         self.progress.played(trial, len(self.results))
 
-    def _summary(self, wall_s: float) -> dict[str, Any]:
+    def _summary(self, done: Sequence[int], wall_s: float) -> dict[str, Any]:
+        """Of the run; its pace is that of the trials that this server has done."""
         logs = [log for trial in self.trials for log in self.directory.logs(trial)]
-        logs = [log for log in logs if log.exists()]
-        sim_s = sum(result.sim_s for result in self.results.values())
+        paced_s = sum(self.results[trial].sim_s for trial in done if trial in self.results)
         return {
             "run": str(self.directory.path),
             "run_id": self.run_id,
             "log": [str(log) for log in logs],
             "digest": digest(logs),
             "moves": sum(result.moves for result in self.results.values()),
-            "sim_s": round(sim_s, 3),
+            "sim_s": round(sum(result.sim_s for result in self.results.values()), 3),
             "wall_s": round(wall_s, 3),
-            "real_time_factor": round(sim_s / wall_s, 2),
+            "real_time_factor": round(paced_s / wall_s, 2),
         }
 
     def _circumstances(self) -> dict[str, Any]:
@@ -122,7 +145,7 @@ class Run:
     def _write_manifest(self, state: str) -> None:
         """Conditions x trials x seeds, one record each."""
         run = self.experiment.run
-        complete = {trial for trial, result in self.results.items() if result.complete}
+        complete = {trial: asdict(result) for trial, result in self.results.items() if result.complete}
         records = [
             {
                 "condition": robot.group,
@@ -130,11 +153,13 @@ class Run:
                 "role": robot.role.value,
                 "trial": trial,
                 "seed": run.seed,
-                "log": self.directory.logs(trial)[0].name,
+                "log": self.directory.log(trial).name,
                 "state": "complete" if trial in complete else state,
             }
             for trial in self.trials
             for robot in self.experiment.robot
         ]
         about = {"name": run.name, "run_id": self.run_id, "moves": run.moves, "set": list(self.changes)}
-        self.directory.write_json(MANIFEST, {**about, "trials": records})
+        simulation = asdict(self.simulation) if self.simulation else None
+        content = {**about, "simulation": simulation, "trials": records, "results": complete}
+        self.directory.write_json(MANIFEST, content)

@@ -9,13 +9,15 @@ import re
 import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from swarm.control.reaching import ENDPOINT
 from swarm.errors import NO_ROOM, UserError
 from swarm.files import new_folder
+from swarm.logs.recover import close_log
+from swarm.logs.trial_logs import OPEN_SUFFIX
 
 EXPERIMENT, MANIFEST = "experiment.toml", "manifest.json"
 
@@ -25,12 +27,11 @@ class RunDirectory:
     """A run's directory: `experiment.toml`, `manifest.json` (conditions x trials x seeds), `run.json`
     (what differs between two runs of one seed), `trial-000.mcap` and so on, `output/` of the processes.
 
-    Every server that went on with a trial left a log of its own: `trial-000-2.mcap` and so on.
+    Where a trial's log goes on in more files they are `trial-000-2.mcap` and so on; the one that is being
+    written has `.part` at its end.
     """
 
     path: Path
-    part: int = 1
-    """Which of its trial's logs this server writes, counted from 1."""
     is_new: bool = True
     """Whether no other server has left anything here."""
 
@@ -39,20 +40,6 @@ class RunDirectory:
         """A new directory; without a path the first free runs/NAME-001, -002 and so on."""
         chosen = path or _free(Path("runs"), name)
         return cls(new_folder(chosen))
-
-    @classmethod
-    def reopened(cls, path: Path, trial: int) -> RunDirectory:
-        """The directory of a run that another server began, for the next log of its trial.
-
-        A server that was killed in its first moment left an empty file, which makes room.
-        """
-        directory = cls(path, is_new=False)
-        while directory.log(trial).exists():
-            if directory.log(trial).stat().st_size == 0:
-                directory.log(trial).unlink()
-            else:
-                directory = replace(directory, part=directory.part + 1)
-        return directory
 
     @contextmanager
     def held(self) -> Iterator[None]:
@@ -73,15 +60,36 @@ class RunDirectory:
             kept.write_bytes(experiment)
         return kept
 
-    def log(self, trial: int) -> Path:
-        """The log that this server writes."""
-        return self.logs(trial)[-1]
+    def log(self, trial: int, part: int = 1) -> Path:
+        """Where a part of a trial's log is, once it is closed."""
+        later = "" if part == 1 else f"-{part}"
+        return self.path / f"{trial_name(trial)}{later}.mcap"
 
     def logs(self, trial: int) -> list[Path]:
-        """All logs of a trial up to this server's, in order."""
-        name = trial_name(trial)
-        later = [f"{name}-{part}.mcap" for part in range(2, self.part + 1)]
-        return [self.path / log for log in (f"{name}.mcap", *later)]
+        """The parts of a trial's log that are there, in order."""
+        return [self.log(trial, part) for part in self._parts(trial)]
+
+    def next_part(self, trial: int) -> int:
+        """The number of the part that is written next."""
+        return max(self._parts(trial), default=0) + 1
+
+    def close_logs(self) -> None:
+        """Close the logs that an earlier server left open."""
+        for left in sorted(self.path.glob(f"trial-*.mcap{OPEN_SUFFIX}")):
+            close_log(left)
+
+    def set_aside(self, trial: int) -> None:
+        """Give the logs of a trial that is simulated anew names under which nobody takes them for its own."""
+        for log in self.logs(trial):
+            number = 1
+            while (aside := log.with_suffix(f".interrupted-{number}.mcap")).exists():
+                number += 1
+            log.rename(aside)
+
+    def _parts(self, trial: int) -> list[int]:
+        pattern = re.compile(rf"{trial_name(trial)}(?:-(\d+))?\.mcap")
+        matches = map(pattern.fullmatch, os.listdir(self.path))
+        return sorted(int(match[1] or 1) for match in matches if match)
 
     def output(self, trial: int) -> Path:
         """Where the processes of a trial print to."""

@@ -11,14 +11,16 @@ from server.control.desk import Desk
 from server.processes.environment import TrialEnvironment
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
-from server.recording.recorder import Recorder
-from swarm.checkup.machine import require_room
+from server.recording.trial_recorder import TrialRecorder
+from swarm.clock import unix_clock
 from swarm.errors import RunFailedError
 from swarm.logs.ending import COMPLETE
 from swarm.messages import swarm_pb2 as pb
 
 SIGNALLED = 128
 """A process that leaves on a signal has this code and the signal's number."""
+LOOK_FOR_ROOM_S = 1.0
+"""A person frees some space; who waits need not be quicker."""
 BATCHES_AFTER_THE_END = 3
 """The end reaches the robots two exchanges later; one more brings their last words."""
 
@@ -34,11 +36,9 @@ class TrialResult:
     sim_s: float
     messages: int
     bad_messages: int
-    unknown_keys: dict[str, int]
-    oversized: dict[str, int]
-    """Keys with messages that were too large to be logged; `swarm check` counts them as missing."""
+    left_out: dict[str, dict[str, int]]
+    """By reason, keys with the number of their messages that were not recorded."""
     disk_error: str
-    restarted_too_often: dict[str, int]
     slowest_keys: dict[str, float]
     stopped: str
     """Who ended the trial before its time, and why; empty if nobody did."""
@@ -51,7 +51,7 @@ class Trial:
         self,
         environment: TrialEnvironment,
         conductor: Conductor,
-        recorder: Recorder,
+        recorder: TrialRecorder,
         health: Health,
         views: Views,
         show: Callable[[Conductor, float], None],
@@ -98,10 +98,8 @@ class Trial:
             sim_s=(self._t_ns - (self._began_ns or 0)) / 1e9,
             messages=self._recorder.messages,
             bad_messages=self._conductor.bad_messages,
-            unknown_keys=self._recorder.unknown_keys,
-            oversized=self._recorder.oversized,
+            left_out={reason: dict(keys) for reason, keys in vars(self._recorder.left_out).items()},
             disk_error=self._recorder.disk_error,
-            restarted_too_often=self._recorder.restarted_too_often,
             slowest_keys=self._health.lowest_share,
             stopped=self._conductor.stopped,
         )
@@ -123,7 +121,7 @@ class Trial:
         if self._batches % self._environment.batches_between_flushes == 0:
             self._look_for_standing(batch.t_ns)
             self._recorder.flush()
-            require_room(self._recorder.path.parent)
+            self._await_room()
             self._show(self._conductor, (self._t_ns - self._began_ns) / 1e9)
 
     def _wait(self) -> None:
@@ -140,6 +138,25 @@ class Trial:
                 self._environment.warn(line)
         else:
             self._conductor.check_progress(t_ns)
+
+    def _await_room(self) -> None:
+        """While the disk has no room the trial pauses: robots stand after their moves, a lockstep stops."""
+        lack = self._recorder.waits_for
+        if bool(lack) == self._conductor.lacks_room:
+            return
+        self._tell("paused" if lack else "goes on", lack or "the disk has room again")
+        if self._environment.session is None:
+            for _ in unix_clock().ticks(LOOK_FOR_ROOM_S):
+                self._recorder.flush()
+                if not self._recorder.waits_for:
+                    break
+            self._tell("goes on", "the disk has room again")
+        else:
+            self._conductor.lacks_room = bool(lack)
+
+    def _tell(self, name: str, text: str) -> None:
+        self._environment.warn(f"{name}: {text}")
+        self._environment.reporter.event(name, text, pb.Event.WARNING)
 
     def _note_end(self, error: BaseException) -> None:
         """The reason is the log's last message, and stands in its last record."""

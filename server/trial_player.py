@@ -25,8 +25,9 @@ from server.processes.cpu_affinity import keeping_to_share
 from server.processes.environment import Environment, TrialEnvironment, TrialPlan, simulated
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
+from server.recording.latched import LatchedState
 from server.recording.provenance import metadata
-from server.recording.recorder import Recorder
+from server.recording.trial_recorder import TrialRecorder
 from server.run_directory import RunDirectory
 from server.trial import Trial, TrialResult
 from swarm.config.experiment import Experiment
@@ -51,36 +52,50 @@ class TrialPlayer:
     directory: RunDirectory
     versions: dict[str, str]
     run_id: str = ""
+    is_repeatable: bool = False
+    """Whether a trial that was interrupted begins again, and comes to the same; on robots it goes on."""
 
     def play(self, trial: int, environment: Environment, show: Show, note: Note) -> None:
         """One trial; `note` is told what it came to, also if it is interrupted."""
         identity = RunIdentity.of(self.experiment, trial, self.run_id, self.versions["swarm-runtime"])
-        plan = TrialPlan(identity, self.file, self.directory.output(trial))
+        if self.is_repeatable:
+            self.directory.set_aside(trial)
+        latched = LatchedState(self.experiment)
+        latched.take_up(self.directory.logs(trial))
+        plan = TrialPlan(identity, self.file, self.directory.output(trial), latched.last)
         with environment(plan) as played_on:
-            played = self._assembled(played_on, identity, show)
+            played = self._assembled(played_on, identity, latched, show)
             try:
                 with self._reached(played_on):
                     played.run()
             finally:
                 note(trial, played.result())
 
-    def _assembled(self, environment: TrialEnvironment, identity: RunIdentity, show: Show) -> Trial:
-        """A trial, put together from its parts."""
+    def _assembled(
+        self, environment: TrialEnvironment, identity: RunIdentity, latched: LatchedState, show: Show
+    ) -> Trial:
+        """A trial, put together from its parts; it goes on from what earlier servers recorded of it."""
         experiment, reporter, prompts = self.experiment, environment.reporter, environment.prompts
-        *before, log = self.directory.logs(identity.trial)
-        board = StatusBoard(experiment, identity, prompts, lambda: environment.hub.missing)
+        trial, hub = identity.trial, environment.hub
+        board = StatusBoard(experiment, identity, prompts, lambda: hub.missing)
         latch = EmergencyLatch(self.directory.emergency if environment.session else None)
         robots = [robot.id for robot in experiment.robot]
         control = RunControl(robots, reporter, latch, prompts, board.pose_of)
-        carrier, earlier = environment.carrier, earlier_progress(before)
+        carrier, earlier = environment.carrier, earlier_progress(self.directory.logs(trial))
         conductor = Conductor(experiment, identity, reporter, carrier, control, earlier)
         desk = None
         if environment.session:
             desk = Desk(environment.session, control, board, prompts, conductor, reporter)
-        part = self.directory.part
-        about = metadata(experiment, self.file, self.changes, identity, self.versions, part)
+        recorder = TrialRecorder(
+            partial(self.directory.log, trial),
+            partial(metadata, experiment, self.file, self.changes, identity, self.versions),
+            experiment.log,
+            latched,
+            self.directory.next_part(trial),
+            recovered=lambda: hub.recovered,
+        )
         health, views = Health(reporter), Views(experiment)
-        return Trial(environment, conductor, Recorder(log, about), health, views, show, desk)
+        return Trial(environment, conductor, recorder, health, views, show, desk)
 
     def _reached(self, environment: TrialEnvironment) -> AbstractContextManager[None]:
         """Where people find a run that they can steer."""

@@ -7,6 +7,7 @@ import sys
 from importlib import import_module
 
 from swarm.checkup.finding import require_good
+from swarm.config.arguments import place
 from swarm.errors import guarded
 from swarm.extras import naming_extras
 from swarm.messages import topics
@@ -79,4 +80,7 @@ def _parser() -> OneLineParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add_common_arguments(parser)
+    parser.add_argument(
+        "--state", type=place, metavar="DIR", help="where events are kept that a server may have missed"
+    )
     return parser

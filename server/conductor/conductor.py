@@ -63,6 +63,8 @@ class Conductor:
         self._standstill = Standstill(experiment)
         self._told_of: set[str] = set()
         self._ending = False
+        self.lacks_room = False
+        """Whether the robots are to stand after their moves because nothing can be recorded."""
         self.moves = {robot.id: 0 for robot in experiment.robot}
         """Moves made so far, by robot."""
         self.best_path = {robot.id: 0 for robot in experiment.learners}
@@ -84,7 +86,10 @@ class Conductor:
     @property
     def phase(self) -> pb.RunState.Phase.ValueType:
         """What the trial is about now."""
-        return pb.RunState.ENDED if self._ending else self._control.phase
+        if self._ending:
+            return pb.RunState.ENDED
+        phase = self._control.phase
+        return pb.RunState.PAUSED if self.lacks_room and phase == pb.RunState.RUNNING else phase
 
     @property
     def bad_messages(self) -> int:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from typing import Any
 
 from server.hubs.attendance import Tell
+from swarm.logs.ending import Sender
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Item
-from swarm.messages.topics import Role, Topic, topic_of
+from swarm.messages.topics import EARLIER, Role, Topic, topic_of
 from swarm.runtime.identity import Fingerprint
 from swarm.runtime.liveliness import Presence
 from swarm.runtime.senders import EMULATOR
@@ -42,6 +43,12 @@ class Admission:
             self._admitted.setdefault((presence.kind, presence.name), set()).add(presence.epoch)
         return not reason
 
+    def admit(self, senders: Iterable[Sender]) -> None:
+        """Who stands in the logs of a trial took part in it, though its process may be gone."""
+        for key, epoch in senders:
+            for name in _senders(*found)[:1] if (found := topic_of(key)) else ():
+                self._admitted.setdefault(name, set()).add(epoch)
+
     def knows(self, epoch: int) -> bool:
         """Whether an epoch is of somebody who took part."""
         return any(epoch in starts for starts in self._admitted.values())
@@ -74,7 +81,7 @@ class Admission:
         starts = self._admitted.get((presence.kind, presence.name), set())
         if len(starts) >= MOST_STARTS and presence.epoch not in starts:
             return f"it has started {MOST_STARTS} times in this run"
-        if presence.kind == "robot" and presence.name not in self._robots:
+        if presence.kind in ("robot", EARLIER["robot"]) and presence.name not in self._robots:
             return f"the experiment does not name it; it names {', '.join(self._robots)}"
         if presence.identity == str(self._identity):
             return ""
@@ -93,5 +100,5 @@ class Admission:
 def _senders(topic: Topic[Any], robot: str) -> tuple[tuple[str, str], ...]:
     """Kind and name of those who send a topic, of or about a robot, to the server."""
     if topic.sender is Role.TRACKER:
-        return (("tracker", "bridge"),)
-    return (("robot", robot), EMULATOR) if topic.sender is Role.ROBOT else ()
+        return (("tracker", "bridge"), (EARLIER["tracker"], "bridge"))
+    return (("robot", robot), (EARLIER["robot"], robot), EMULATOR) if topic.sender is Role.ROBOT else ()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from swarm.messages import swarm_pb2 as pb
+from swarm.messages.topics import EARLIER
 from swarm.runtime.liveliness import Presence, parsed
 from swarm.runtime.zenoh_session import PresenceWatch
 
@@ -57,6 +58,8 @@ class Attendance:
         self._dismissed = True
 
     def _come(self, key: str, presence: Presence) -> None:
+        if presence.kind in EARLIER.values():
+            self._admits(presence)
         if presence.kind not in TAKING_PART:
             return
         name = _name(presence)

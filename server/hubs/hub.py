@@ -40,6 +40,10 @@ class Hub(Protocol):
     def finish(self) -> Batch:
         """Tell the processes that the trial is over; what they still had to say."""
 
+    @property
+    def recovered(self) -> Mapping[Sender, int]:
+        """How many messages of each sender had been lost on their way, and came later."""
+
     def accounts(self) -> Mapping[Sender, int] | None:
         """The last number of each key and epoch by its sender's own account; None: all of it was heard."""
 

@@ -14,14 +14,12 @@ from swarm.access.zenoh_limits import FASTER
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Item
 from swarm.messages.topics import Topic
-from swarm.runtime.zenoh_session import Session, WireSample
+from swarm.runtime.zenoh_session import MOST_AT_ONCE, Session, WireSample
 
 UNRATED_PER_S = 20.0
 """Of what comes as it happens: a robot makes a move or two a second."""
 AT_ONCE = 1000
-"""After a gap in the radio, or at a start that tells of many paths."""
-ROOM_BYTES = 8 << 20
-"""What waits under one key between two looks at most: 8,000 of the shortest messages, 127 of the longest."""
+"""After a gap in the radio, or at a start that tells of many paths; a robot keeps less for a server."""
 TOLD_EVERY_S = 10.0
 
 
@@ -33,9 +31,10 @@ class LimitedInbox:
 
     def __init__(self, session: Session, topic: Topic[Any], robot: str, speed: float, tell: Tell) -> None:
         self.key = topic.key(robot)
-        depth = ROOM_BYTES // topic.largest_bytes
-        self._inbox = session.inbox_of_others(self.key, depth)
-        self._at_once = min(AT_ONCE, depth)
+        listen = session.recovering_inbox if topic.is_recovered else session.inbox_of_others
+        self._most = min(MOST_AT_ONCE, topic.most_waiting)
+        self._inbox = listen(self.key, self._most)
+        self._at_once = min(AT_ONCE, self._most)
         self._per_s = (FASTER * topic.rate_hz if topic.rate_hz else UNRATED_PER_S) * speed
         self._allowed = float(self._at_once)
         self._tell = tell
@@ -46,7 +45,7 @@ class LimitedInbox:
 
     def poll(self) -> list[WireSample]:
         """What has arrived since the last look, in order."""
-        return self._inbox.poll()
+        return self._inbox.poll(self._most)
 
     def limited(self, items: list[Item], now_s: float) -> list[Item]:
         """Of what is its sender's own, what is not too much; `now_s` never goes back."""

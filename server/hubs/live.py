@@ -14,6 +14,7 @@ from server.hubs.attendance import Attendance
 from server.hubs.clock_watch import ClockWatch
 from server.hubs.hub import Batch
 from server.hubs.limited_inbox import inboxes_of
+from server.hubs.unheard import Unheard, must_not_be_lost
 from swarm.clock import WallClock
 from swarm.config.experiment import Experiment
 from swarm.logs.ending import Receipt, Sender, receipts_of
@@ -51,6 +52,7 @@ class LiveHub:
         check: Callable[[], None],
         warn: Callable[[str], None],
         epoch: int,
+        earlier: Mapping[Sender, int] | None = None,
     ) -> None:
         self._session = session
         self._clock = clock
@@ -61,7 +63,9 @@ class LiveHub:
         self._own: list[Item] = []
         robots = [robot.id for robot in experiment.robot]
         self._inboxes = inboxes_of(session, TABLE, robots, clock.speed, self._tell)
+        self._unheard = Unheard(earlier or {})
         self._admission = Admission(identity.fingerprint, robots, self._tell)
+        self._admission.admit(earlier or {})
         watch = session.presence_watch(ALIVE_ROBOTS_AND_TRACKERS)
         self._attendance = Attendance(watch, robots, self._admission.admits, self._tell)
         self._clocks = ClockWatch(clock.speed, self._tell)
@@ -92,7 +96,7 @@ class LiveHub:
             self._check()
             meanwhile()
             next(self._ticks)
-            self._early.extend(item for item in self._received() if _must_not_be_lost(item.key))
+            self._early.extend(item for item in self._received() if must_not_be_lost(item.key))
             if time.monotonic() - named_s > NAMED_EVERY_S:
                 named_s = time.monotonic()
                 self._warn(f"waiting for {', '.join(missing)}")
@@ -125,10 +129,21 @@ class LiveHub:
         leaving = {epoch for epoch in there if self._admission.knows(epoch)}
         deadline_s = time.monotonic() + LAST_WORDS_S
         self._hear_accounts()
-        while leaving - self._gone and time.monotonic() < deadline_s:
+        items = self._received()
+        while self._is_awaited(leaving) and time.monotonic() < deadline_s:
             next(self._ticks)
+            items += self._received()
             self._hear_accounts()
-        return self.unsent()
+        return Batch(self._clock.now_ns(), items + self._received())
+
+    def _is_awaited(self, leaving: set[int]) -> bool:
+        """Whether somebody who leaves has not given account, or has sent more than has come."""
+        return bool(leaving - self._gone) or self._unheard.lacks(self._accounts)
+
+    @property
+    def recovered(self) -> Mapping[Sender, int]:
+        """How many messages of each sender had been lost on their way, and came later."""
+        return self._unheard.recovered
 
     def accounts(self) -> Mapping[Sender, int]:
         """What the processes that have left said, and what the server itself has sent."""
@@ -139,8 +154,9 @@ class LiveHub:
         return self._receipts
 
     def _hear_accounts(self) -> None:
+        samples = self._closing.poll()
         self._attendance.look()
-        for sample in self._closing.poll():
+        for sample in samples:
             header = Header.unpack(sample.attachment)
             if header is not None and self._admission.knows(header.epoch):
                 self._gone.add(header.epoch)
@@ -168,11 +184,11 @@ class LiveHub:
         """A sender's presence arrives before its first message, and so is looked at after the messages."""
         arrived = [(inbox, list(self._items(inbox.poll()))) for inbox in self._inboxes]
         self._attendance.look()
-        now_s = time.monotonic()
+        now_s, now_ns = time.monotonic(), self._clock.now_ns()
         taken: list[Item] = []
         for inbox, items in arrived:
-            accepted = [item for item in items if self._admission.accepts(item)]
-            taken += inbox.limited(accepted, now_s)
+            new = self._unheard.of(filter(self._admission.accepts, items), now_ns)
+            taken += inbox.limited(new, now_s)
         own, self._own = self._own, []
         return taken + own
 
@@ -183,11 +199,6 @@ class LiveHub:
                 self.without_header += 1
             else:
                 yield Item(sample.key, header, sample.payload)
-
-
-def _must_not_be_lost(key: str) -> bool:
-    found = topic_of(key)
-    return found is not None and found[0].delivery is Delivery.EVERY
 
 
 def _is_logged(key: str) -> bool:

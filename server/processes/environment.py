@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,6 +25,7 @@ from server.reporter import Reporter
 from swarm.clock import scaled_clock, unix_clock
 from swarm.config.experiment import REAL_LINKS, Experiment
 from swarm.errors import UserError
+from swarm.logs.ending import Sender
 from swarm.parallel import available_cores
 from swarm.plugins import TRACKERS, plugins
 from swarm.runtime.identity import RunIdentity
@@ -48,6 +49,8 @@ class TrialPlan:
     identity: RunIdentity
     file: Path
     output: Path
+    earlier: Mapping[Sender, int] = field(default_factory=dict)
+    """The last number of each sender in the logs that an earlier server left."""
 
     @property
     def trial(self) -> int:
@@ -187,7 +190,8 @@ def laboratory(
     """
     presence = _presence(plan.identity)
     claim(session, presence)
-    hub = LiveHub(session, unix_clock(), experiment, plan.identity, going_on, warn, presence.epoch)
+    clock = unix_clock()
+    hub = LiveHub(session, clock, experiment, plan.identity, going_on, warn, presence.epoch, plan.earlier)
     reporter = Reporter(hub)
     prompts = Prompts()
     carrier, flush_every = Operator(reporter, warn, prompts), _live_flush(experiment, 1.0)

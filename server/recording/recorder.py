@@ -8,8 +8,12 @@ laid down behind the others, to be overwritten when it has grown: a killed serve
 from __future__ import annotations
 
 import hashlib
+import os
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -35,8 +39,22 @@ MOST_CHANNELS = 60_000
 """MCAP numbers them with 16 bits; the rest is for views."""
 
 
+@dataclass
+class LeftOut:
+    """Keys with the number of their messages that were not recorded."""
+
+    oversized: Counter[str] = field(default_factory=Counter)
+    """Messages above MAX_MESSAGE_BYTES."""
+    unknown_keys: Counter[str] = field(default_factory=Counter)
+    """The key table does not know the key."""
+    restarted_too_often: Counter[str] = field(default_factory=Counter)
+    """More senders than can be logged."""
+    while_paused: Counter[str] = field(default_factory=Counter)
+    """The disk had no room, and the message was none that must not be lost."""
+
+
 class Recorder:
-    """One MCAP file of one trial. Payloads are never decoded; schemas are embedded.
+    """One MCAP file. Payloads are never decoded; schemas are embedded.
 
     A channel stands for one key and one epoch of its sender, so that a restart shows; the file's
     `sequence` is the header's, its publish time the header's, its log time the time of receipt.
@@ -47,28 +65,36 @@ class Recorder:
         path: Path,
         metadata: Mapping[str, Mapping[str, str]],
         monotonic_s: Callable[[], float] = time.monotonic,
+        left_out: LeftOut | None = None,
     ) -> None:
         self._file = new_file(path)
-        self._sync = DiskSync(self._file.fileno())
         self._monotonic_s = monotonic_s
         self._due_s = 0.0
         self._laid_down_end = 0
+        self._flushed_end = self._flushed_messages = 0
         self.path = path
         self.messages = 0
-        self.oversized: dict[str, int] = {}
-        """Keys with messages above MAX_MESSAGE_BYTES, and the number of them that were left out."""
-        self.unknown_keys: dict[str, int] = {}
-        """Keys that the key table does not know, with the number of messages that were left out."""
-        self.restarted_too_often: dict[str, int] = {}
-        """Keys of more senders than can be logged, with the number of messages that were left out."""
+        self.left_out = left_out or LeftOut()
         self._writer = LogWriter(self._file)
         self._schemas: dict[str, int] = {}
         self._channels: dict[Sender, int | None] = {}
-        self._last: dict[Sender, int] = {}
+        self.last: dict[Sender, int] = {}
+        """The last number of each sender."""
         self._epochs: dict[str, int] = {}
         self._views: dict[str, int] = {}
-        self._add_metadata(metadata)
-        self._file.flush()
+        try:
+            self._add_metadata(metadata)
+            self._hand_over()
+        except OSError:
+            self._drop()
+            path.unlink()
+            raise
+        self._sync = DiskSync(self._file.fileno())
+
+    @property
+    def size_bytes(self) -> int:
+        """Of the file, as far as it was flushed."""
+        return self._flushed_end
 
     def write(self, batch: Batch) -> None:
         """Append a batch; its order is the file's order."""
@@ -80,9 +106,9 @@ class Recorder:
             if channel is None:
                 self._leave_out(key)
                 continue
-            self._last[name] = sequence = header.sequence & 0xFFFFFFFF
+            self.last[name] = sequence = header.sequence & 0xFFFFFFFF
             if len(payload) > MAX_MESSAGE_BYTES:
-                self.oversized[key] = self.oversized.get(key, 0) + 1
+                self.left_out.oversized[key] += 1
             else:
                 self._writer.add_message(channel, batch.t_ns, payload, header.t_ns, sequence)
                 self.messages += 1
@@ -124,19 +150,38 @@ class Recorder:
         """
         self.flush()
         self._add_metadata(
-            ending_records(state, reason, self._last if accounts is None else accounts, receipts)
+            ending_records(state, reason, self.last if accounts is None else accounts, receipts)
         )
+
+    def received(self) -> dict[Sender, int]:
+        """How many messages of each sender were written, and flushed."""
+        counts = self._writer.messages_by_channel()
+        return {
+            sender: counts.get(channel, 0)
+            for sender, channel in self._channels.items()
+            if channel is not None and sender[1]
+        }
+
+    def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
+        """Write a metadata record."""
+        self._writer.add_metadata(name, dict(values))
 
     def close(self) -> None:
         """Write the index and close the file; a second call does nothing."""
         if not self._file.closed:
-            try:
-                self._writer.finish()
-                self._file.truncate()
-                self._file.flush()
-            finally:
-                self._sync.close()
-                self._file.close()
+            self._writer.finish()
+            self._file.truncate()
+            self._file.flush()
+            self._sync.close()
+            self._file.close()
+
+    def abandon(self) -> None:
+        """Leave the file as it was when it was flushed last, since the disk takes no more."""
+        self.messages = self._flushed_messages
+        with suppress(OSError):
+            os.ftruncate(self._file.fileno(), self._flushed_end)
+        self._sync.close()
+        self._drop()
 
     def _lay_down(self) -> None:
         """Put the open chunk where it will stand, as it is now; what is written next overwrites it."""
@@ -149,6 +194,11 @@ class Recorder:
             self._file.truncate()
         self._laid_down_end = 0
         self._file.flush()
+        self._flushed_end, self._flushed_messages = self._file.tell(), self.messages
+
+    def _drop(self) -> None:
+        """Close the file without what is still to be written into it."""
+        self._file.raw.close()
 
     def _add_metadata(self, metadata: Mapping[str, Mapping[str, str]]) -> None:
         for name, values in metadata.items():
@@ -171,9 +221,9 @@ class Recorder:
         """Count a message, unless its topic is one that is never logged."""
         found = topic_of(key)
         if found is None:
-            self.unknown_keys[key] = self.unknown_keys.get(key, 0) + 1
+            self.left_out.unknown_keys[key] += 1
         elif found[0].logged:
-            self.restarted_too_often[key] = self.restarted_too_often.get(key, 0) + 1
+            self.left_out.restarted_too_often[key] += 1
 
     def _channel(self, key: str, message: type[Message], about: dict[str, str]) -> int:
         number = len(self._writer.channels) + 1

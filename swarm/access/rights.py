@@ -13,7 +13,7 @@ from typing import Any
 
 from swarm.access.identities import Identity
 from swarm.messages import topics
-from swarm.messages.topics import ACCOUNT, ALIVE, ASKED_BY, TABLE, Role, Topic
+from swarm.messages.topics import ACCOUNT, ALIVE, ASKED_BY, EARLIER, RECOVERY, TABLE, Role, Topic
 
 
 class Act(Enum):
@@ -23,6 +23,8 @@ class Act(Enum):
     HEAR = "hear"
     ASK = "ask"
     ANSWER = "answer"
+    REPEAT = "repeat"
+    """Answer for what lies below it with samples of its own: what was said under it, once more."""
     SHOW = "show"
     """Show presence under it."""
     SEE = "see"
@@ -37,7 +39,7 @@ class Right:
     key: str
 
 
-KINDS_OF_ROBOT = ("robot", "calibration", "imitation")
+KINDS_OF_ROBOT = ("robot", EARLIER["robot"], "calibration", "imitation")
 """The kinds of presence of what runs on a robot's board: its agent, or a tool in its place."""
 EVERYBODY = "alive/**"
 
@@ -70,6 +72,8 @@ def _server(identity: Identity, known: Known, robots: Sequence[str]) -> Iterator
             yield from _each(Act.SEND, topic, robots)
         else:
             yield from _each(Act.HEAR, topic, robots)
+            yield from _recovery((Act.ASK, Act.HEAR, Act.SEE), topic, robots)
+            yield from _each(Act.ASK, topic, robots) if topic.is_recovered else ()
     yield Right(Act.HEAR, ACCOUNT.format(name="*"))
     yield from (Right(Act.ANSWER, key) for key in ASKED_BY)
     yield from (Right(Act.SHOW, presence_of("server", "server")), Right(Act.SEE, EVERYBODY))
@@ -78,12 +82,13 @@ def _server(identity: Identity, known: Known, robots: Sequence[str]) -> Iterator
 def _tracker(identity: Identity, known: Known, robots: Sequence[str]) -> Iterator[Right]:
     for topic in known:
         if topic.sender is identity.role or topic is topics.TRUTH:
-            yield from _each(Act.SEND, topic, robots)
+            yield from _sent(topic, robots)
         if topic in (topics.RUN_STATE, topics.TRUTH, topics.CARRY):
             yield from (Right(Act.HEAR, topic.key()), *_each(Act.HEAR, topic, robots))
     plays_bodies = topics.TRUTH in known
-    names = {"bridge": "tracker"} | ({"robots": "emulator"} if plays_bodies else {})
-    for name, kind in names.items():
+    kinds = {"tracker": "bridge", EARLIER["tracker"]: "bridge"}
+    kinds |= {"emulator": "robots"} if plays_bodies else {}
+    for kind, name in kinds.items():
         yield Right(Act.SEND, ACCOUNT.format(name=name))
         yield Right(Act.SHOW, presence_of(kind, name))
         yield Right(Act.SEE, presence_of(kind, "*"))
@@ -96,7 +101,7 @@ def _robot(identity: Identity, known: Known, robots: Sequence[str]) -> Iterator[
     own = (identity.robot,)
     for topic in known:
         if topic.sender is identity.role:
-            yield from _each(Act.SEND, topic, own)
+            yield from _sent(topic, own)
         elif topic.to_robot or topic in (topics.CARRY, topics.VIEW):
             yield from _each(Act.HEAR, topic, own)
     yield Right(Act.SEND, ACCOUNT.format(name=identity.robot))
@@ -116,6 +121,19 @@ def _operator(identity: Identity, known: Known, robots: Sequence[str]) -> Iterat
 def _observer(identity: Identity, known: Known, robots: Sequence[str]) -> Iterator[Right]:  # noqa: ARG001
     yield from (Right(Act.HEAR, topic.key()) for topic in known)
     yield Right(Act.SEE, EVERYBODY)
+
+
+def _sent(topic: Topic[Any], robots: Sequence[str]) -> Iterator[Right]:
+    """To send a topic, and to answer a server that missed some of it."""
+    yield from _each(Act.SEND, topic, robots)
+    yield from _each(Act.REPEAT, topic, robots) if topic.is_recovered else ()
+    yield from _recovery((Act.ANSWER, Act.SEND, Act.SHOW), topic, robots)
+
+
+def _recovery(acts: Iterable[Act], topic: Topic[Any], robots: Sequence[str]) -> Iterator[Right]:
+    """What it takes besides to have messages once more; nothing for a topic that needs none."""
+    for act in acts if topic.is_recovered else ():
+        yield from (Right(act, RECOVERY.format(key=right.key)) for right in _each(act, topic, robots))
 
 
 def _each(act: Act, topic: Topic[Any], robots: Sequence[str]) -> Iterator[Right]:

@@ -18,6 +18,7 @@ _MESSAGES: Mapping[Act, Mapping[str, tuple[str, ...]]] = {
     Act.HEAR: {"ingress": ("declare_subscriber",), "egress": ("put",)},
     Act.ASK: {"ingress": ("query",), "egress": ("reply", "declare_queryable")},
     Act.ANSWER: {"ingress": ("declare_queryable", "reply"), "egress": ("query",)},
+    Act.REPEAT: {"ingress": ("reply",)},
     Act.SHOW: {"ingress": ("liveliness_token",)},
     Act.SEE: {
         "ingress": ("liveliness_query", "declare_liveliness_subscriber"),

@@ -10,7 +10,7 @@ from pathlib import Path
 from swarm.errors import UserError
 from swarm.logs.identity import LogIdentity, identify
 from swarm.logs.runs import MANIFEST
-from swarm.logs.trial_logs import joined, logs_in
+from swarm.logs.trial_logs import closed_path, joined, logs_in
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def _logs_of(run: Path, notes: list[str]) -> list[LogIdentity]:
         return [identify(run)]
     logs = logs_in(run, notes)
     _refuse_mixture(run, logs)
-    notes.extend(_missing(run, {log.path.name for log in logs}))
+    notes.extend(_missing(run, {closed_path(log.path).name for log in logs}))
     return logs
 
 

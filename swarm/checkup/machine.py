@@ -6,12 +6,11 @@ import importlib.util
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from swarm.checkup.finding import Finding, bad, good, warning
 from swarm.config.experiment import Experiment
-from swarm.errors import RunFailedError
 
 LAB_MODULES = (
     "foxglove_schemas_protobuf",
@@ -26,8 +25,8 @@ LAB_MODULES = (
 )
 """Of the extra `lab` in pyproject.toml, as Python imports them."""
 RESERVE_BYTES = 64 << 20
-"""A run that finds less does not start, and one that is left with less ends in order: its log's index, its
-manifest and the processes' output still have room, and so have others on the machine."""
+"""A run that finds less does not start, and one that is left with less pauses: its log's index, its manifest
+and the processes' output still have room, and so have others on the machine."""
 BYTES_A_MOVE = 6_000
 """Of a log, for each robot: that of `make demo` takes 5.6 kB."""
 LONGEST_SOCKET_PATH = 107
@@ -90,13 +89,11 @@ def writable(about: str, directory: Path) -> Finding:
     return good(about, f"{directory} can be written to")
 
 
-def require_room(place: Path) -> None:
-    """RunFailedError once the reserve is touched: a run then ends in order, with a log that is closed."""
-    if free_bytes(place) < RESERVE_BYTES:
-        raise RunFailedError(
-            f"the disk of {place} is full but for {_megabytes(RESERVE_BYTES)}: the run ends and its log "
-            "is closed; free some space, and start a new run"
-        )
+def lack_of_room(place: Path, free: Callable[[Path], int], more_bytes: int = 0) -> str:
+    """Why nothing more may be recorded: less than the reserve, and so much more, is free. Empty if it may."""
+    if free(place) >= RESERVE_BYTES + more_bytes:
+        return ""
+    return f"the disk of {place} is full but for {_megabytes(RESERVE_BYTES)}: free some space"
 
 
 def free_bytes(place: Path) -> int:

@@ -80,8 +80,17 @@ def _told(path: Path, faults: list[str]) -> str:
     return f"{printable(path)} is not sound: {'; '.join(faults[:3])}{more}"
 
 
+def _completeness(found: LogCheck) -> str:
+    share = "100" if not found.holes else f"{min(99.999, 100 * found.share):.3f}"
+    known = "" if not found.lacking or found.holes else " known"
+    return f"complete: {share} % of {found.events:,}{known} learning events and orders"
+
+
 def _tell(found: LogCheck) -> None:
     for remark in found.remarks:
         typer.echo(f"note: {remark}")
+    typer.echo(f"{printable(found.path)}: {_completeness(found)}")
+    for hole in found.holes:
+        typer.echo(f"missing: {hole}")
     if found.sound:
         typer.echo(f"{printable(found.path)}: complete and sound, {found.messages:,} messages")

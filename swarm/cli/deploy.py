@@ -25,6 +25,9 @@ def deploy_command(
         Path | None,
         typer.Argument(help="What is to run there.", show_default="what every machine has already"),
     ] = None,
+    run: Annotated[
+        bool, typer.Option("--run", help="Start the server as a service too: the run begins.")
+    ] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would change.")] = False,
     rollback: Annotated[bool, typer.Option("--rollback", help="Go back to the release before.")] = False,
     insecure: Annotated[
@@ -37,7 +40,7 @@ def deploy_command(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Install the program on all machines of a laboratory and start its services there, over SSH.
+    """Install the program on all machines of a laboratory and start agents and tracker bridge, over SSH.
 
     Machines need no internet: wheels are fetched here once for each kind of machine, and copied. What does
     not become ready gives way to the release before. Exit code 0: every machine is as it should be; 1: not.
@@ -55,8 +58,10 @@ def deploy_command(
     if rollback:
         if experiment or dry_run:
             raise UserError("--rollback goes back to what was there: leave EXPERIMENT and --dry-run out")
-        outcomes = roll_back(lab, _tell)
+        outcomes = roll_back(lab, _tell, interrupt=interrupt)
     else:
+        if run and not experiment:
+            raise UserError("--run begins an experiment: say which")
         _check(laboratory, experiment)
         planner = Planner(
             lab,
@@ -64,6 +69,7 @@ def deploy_command(
             lab.versions.program or versions()["program"],
             ExperimentFiles.read(experiment) if experiment else None,
             Protection.of(laboratory.parent / KEYS_FOLDER, insecure),
+            run=run,
         )
         outcomes = deploy(lab, planner, _tell, dry_run=dry_run, interrupt=interrupt)
     if json:

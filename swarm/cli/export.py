@@ -13,7 +13,7 @@ from swarm.files import printable
 
 
 def export_command(
-    log: Annotated[Path, typer.Argument(help="A .mcap file of a trial.")],
+    log: Annotated[Path, typer.Argument(help="A .mcap file of a trial, or a run directory of one trial.")],
     to: Annotated[Literal["csv", "parquet", "rosbag2"], typer.Option(help="The format.")],
     out: Annotated[Path | None, typer.Option(help="The new folder.", show_default="LOG-FORMAT")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the files as one JSON object.")] = False,

@@ -45,7 +45,7 @@ def film_command(
         ),
     ] = None,
     seconds: Annotated[float, typer.Option(min=0.1, max=LONGEST_S, help="How long the film takes.")] = 30.0,
-    rate: Annotated[int, typer.Option(min=1, max=60, help="Pictures a second.")] = 25,
+    rate: Annotated[int, typer.Option(min=1, max=60, help="Pictures a second.")] = 15,
     json: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")] = False,
 ) -> None:
     """Film a robot's learning: the arena with what it knows, its camera, its curve.

@@ -26,8 +26,9 @@ def recover_command(
     """
     require_extra("lab", "mcap", "small_mcap")
     from swarm.logs.recover import recover_log
+    from swarm.logs.trial_logs import closed_path
 
-    whole = out or log.with_suffix(".recovered.mcap")
+    whole = out or closed_path(log).with_suffix(".recovered.mcap")
     found = recover_log(log, whole)
     if json:
         print_json({"log": printable(whole), "messages": found.messages, "lost": list(map(str, found.lost))})

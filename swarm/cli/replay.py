@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 
 def replay_command(
-    log: Annotated[list[Path], typer.Argument(help="The .mcap file of a trial; all, if there are several.")],
+    log: Annotated[
+        list[Path], typer.Argument(help="A run directory of one trial, or all .mcap files of a trial.")
+    ],
     robot: Annotated[str, typer.Option(help="Of this learner alone.", show_default="all")] = "",
     at: Annotated[
         int | None, typer.Option(min=1, help="Stop after so many moves, and tell Q, memory, R.")

@@ -18,8 +18,8 @@ from swarm.signals import leave_at_once
 
 def simulate_command(
     experiment: Annotated[
-        Path, typer.Argument(help="The experiment file, for instance deploy/sim/demo.toml.")
-    ],
+        Path | None, typer.Argument(help="The experiment file, for instance deploy/sim/demo.toml.")
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -75,16 +75,28 @@ def simulate_command(
         bool,
         typer.Option("--emulate", help="Emulate the robots whose driver is a real link; needs --speed X."),
     ] = False,
+    resume: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="RUN",
+            help="In place of an experiment: a run that was interrupted. Its finished trials are kept, the "
+            "others are done.",
+            callback=good_place,
+        ),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")] = False,
 ) -> None:
     """Run a simulated swarm: separate processes for agents, tracker and server, and a complete log."""
     leave_at_once()
     require_extra("lab", "small_mcap", "rich", "tomlkit")
-    options = {"--out": out, "--seed": seed, "--moves": moves, "--speed": speed, "--processes": processes}
+    options = {"--out": out, "--seed": seed, "--moves": moves, "--processes": processes, "--resume": resume}
     options |= {"--trials": trials, "--jobs": jobs, "--scheduler": scheduler}
+    if not (resume and speed == arguments.MAX):
+        options["--speed"] = speed
     given = [f"{name}={value}" for name, value in options.items() if value is not None]
     given += [f"--set={change}" for change in changes or ()]
     flags = [flag for flag, wanted in (("--emulate", emulate), ("--json", json)) if wanted]
-    command = module_command("server", str(experiment), *given, *flags)
+    file = [str(experiment)] if experiment else []
+    command = module_command("server", *file, *given, *flags)
     sys.stdout.flush()
     os.execve(sys.executable, command, child_environment())

@@ -1,7 +1,6 @@
 """What an experiment file says: the run, the arena, the rules of learning, the robots.
 
-`Experiment.load` is the one door: it also checks what no single value shows, such as two robots with
-one id or compartments that overlap.
+`Experiment.load` is the one door: it also checks what no single value shows, such as two robots of one id.
 """
 
 from __future__ import annotations
@@ -29,7 +28,6 @@ from swarm.learning.random import spawned_generator
 
 OLDEST_POSE_S = 0.9
 """A tenth below the second at which a robot stands for want of a newer pose."""
-
 
 REAL_LINKS = ("serial", "wifi", "i2c", "spi")
 """Drivers of real robots; a simulation runs them against emulated ones."""
@@ -67,6 +65,16 @@ class RunSettings:
     """What a robot does that no longer hears the server: wait after the move under way, or stop at once."""
     without_server_s: Annotated[float, Between(2, 3600)] = 5.0
     """Silence after which it does so; the run's state comes once a second, and a lost one stops nobody."""
+
+
+@dataclass(frozen=True)
+class LogSettings:
+    """[log]: when a trial's log goes on in another file, each of which can be read alone."""
+
+    file_mb: Annotated[float, Between(0.1, 1_000_000)] = 256.0
+    """Size of a file in 10^6 bytes: a log of ten robots takes a day or so to fill one."""
+    file_h: Annotated[float, Between(0.01, 10_000)] = 24.0
+    """Hours of the run in one file."""
 
 
 @dataclass(frozen=True)
@@ -279,6 +287,7 @@ class Experiment:
     visits: VisitSettings = field(default_factory=VisitSettings)
     camera: CameraSettings = field(default_factory=CameraSettings)
     simulation: SimulationSettings = field(default_factory=SimulationSettings)
+    log: LogSettings = field(default_factory=LogSettings)
 
     @classmethod
     def load(cls, path: Path, changes: Iterable[str] | None = None) -> Experiment:

@@ -20,6 +20,7 @@ EXPERIMENT_TABLES = {"run": "[run]", "arena": "[arena]", "learning": "[learning]
     "body": "[body]",
     "tracker": "[tracker]",
     "simulation": "[simulation]",
+    "log": "[log]",
     "robot": "[[robot]]",
 }
 LABORATORY_TABLES = {"laboratory": "[laboratory]", "server": "[server]", "tracker": "[tracker]"} | {

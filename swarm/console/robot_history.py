@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from array import array
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeVar
@@ -98,6 +99,12 @@ class Track:
             before.y_m + share * (after.y_m - before.y_m),
             wrap_angle_rad(before.theta_rad + share * turn_rad),
         )
+
+    def heading_about(self, t_s: float, within_s: float) -> float | None:
+        """The mean of the headings so near a time; a tracker's headings are noisier than its places."""
+        first, end = bisect_left(self.t_s, t_s - within_s), bisect_right(self.t_s, t_s + within_s)
+        headings = self.theta_rad[first:end]
+        return math.atan2(sum(map(math.sin, headings)), sum(map(math.cos, headings))) if headings else None
 
     def _pose(self, place: int) -> Pose:
         return Pose(self.x_m[place], self.y_m[place], self.theta_rad[place])

@@ -15,7 +15,7 @@ from swarm.files import printable
 from swarm.logs.follow import LogFollower, Timed
 from swarm.logs.info import logs_named
 from swarm.logs.reader import LogChannel, LogReader
-from swarm.logs.trial_logs import LOG_NAME, trial_of
+from swarm.logs.trial_logs import LOG_NAME, part_of, trial_of
 
 AT_ONCE = 500
 """Messages taken in while nobody can look: some milliseconds of work."""
@@ -109,12 +109,7 @@ def logs_of_trial(place: Path, trial: int | None) -> list[Path]:
     if trial is not None and trial not in trials:
         raise UserError(f"{place}: holds no log of trial {trial}; there are {', '.join(map(str, trials))}")
     chosen = trials[-1] if trial is None else trial
-    return sorted((path for path in logs if trial_of(path) == chosen), key=_part)
-
-
-def _part(path: Path) -> int:
-    """trial-000.mcap is the first part, trial-000-2.mcap the second."""
-    return int(path.stem.split("-")[2]) if path.stem.count("-") > 1 else 1
+    return sorted((path for path in logs if trial_of(path) == chosen), key=part_of)
 
 
 def _is_shown(channel: LogChannel) -> bool:

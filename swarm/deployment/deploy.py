@@ -27,9 +27,9 @@ def deploy(
     return asyncio.run(Deployment(laboratory, planner, tell).run(dry_run, interrupt))
 
 
-def roll_back(laboratory: Laboratory, tell: Tell) -> list[Outcome]:
-    """Bring every machine back to the release that it ran before."""
-    return asyncio.run(_rolled_back(laboratory, tell))
+def roll_back(laboratory: Laboratory, tell: Tell, *, interrupt: bool = False) -> list[Outcome]:
+    """Bring every machine back to the release that it ran before; UserError as above."""
+    return asyncio.run(_rolled_back(laboratory, tell, interrupt))
 
 
 class Deployment:
@@ -46,8 +46,8 @@ class Deployment:
         async with visited(self._laboratory, self._tell) as fleet:
             await fleet.each(self._plan)
             if not dry_run:
-                if not interrupt:
-                    self._refuse_to_end_a_run(fleet)
+                if any(visit.outcome.state is State.WOULD_CHANGE for visit in fleet.visits):
+                    _refuse_to_end_a_run(fleet, interrupt)
                 await fleet.each(self._change)
             return fleet.outcomes
 
@@ -61,14 +61,6 @@ class Deployment:
         is_same = visit.found["current"] == plan.release
         runs = all(outcome.services.get(name) == "active" for name in plan.services)
         outcome.state = State.UNCHANGED if is_same and runs else State.WOULD_CHANGE
-
-    def _refuse_to_end_a_run(self, fleet: Fleet) -> None:
-        changing = [visit for visit in fleet.visits if visit.outcome.state is State.WOULD_CHANGE]
-        for visit in fleet.visits:
-            if changing and visit.found["services"].get(f"{SERVER}.service") == "active":
-                raise UserError(
-                    f"a run is under way ({visit.outcome.name}): wait for its end, or end it with --interrupt"
-                )
 
     async def _change(self, visit: Visit) -> None:
         if visit.outcome.state is not State.WOULD_CHANGE:
@@ -93,12 +85,21 @@ class Deployment:
                 raise MachineError(f"{name} is {installed[name]} and [versions] says {version}")
 
 
-async def _rolled_back(laboratory: Laboratory, tell: Tell) -> list[Outcome]:
+def _refuse_to_end_a_run(fleet: Fleet, interrupt: bool) -> None:
+    for visit in fleet.visits:
+        if visit.found["services"].get(f"{SERVER}.service") == "active" and not interrupt:
+            raise UserError(
+                f"a run is under way ({visit.outcome.name}): wait for its end, or end it with --interrupt"
+            )
+
+
+async def _rolled_back(laboratory: Laboratory, tell: Tell, interrupt: bool) -> list[Outcome]:
     async def go_back(visit: Visit) -> None:
         done = await visit.link.ask("go_back", within_s=laboratory.policies.healthy_within_s)
         visit.outcome.release, visit.outcome.services = done["release"], done["services"]
         visit.outcome.state = State.ROLLED_BACK
 
     async with visited(laboratory, tell) as fleet:
+        _refuse_to_end_a_run(fleet, interrupt)
         await fleet.each(go_back)
         return fleet.outcomes

@@ -50,13 +50,17 @@ class Target:
     @property
     def units(self) -> list[str]:
         """The names of the unit files that its services are started from."""
-        everything = self.services([robot.id for robot in self.robots])
+        everything = self.services([robot.id for robot in self.robots], run=True)
         return sorted({f"{AGENT}.service" if name.startswith(AGENT) else name for name in everything})
 
-    def services(self, taking_part: Collection[str]) -> list[str]:
-        """The services to start for an experiment with these robots; the server's comes first."""
-        server = [f"{SERVER}.service"] if self.conducts else []
-        bridge = [f"{BRIDGE}.service"] if self.tracking_system is not None else []
+    def services(self, taking_part: Collection[str], run: bool) -> list[str]:
+        """The services to start for an experiment with these robots.
+
+        The server, and a bridge that it hosts, belong to a run: they come first, and only if it is to begin.
+        """
+        server = [f"{SERVER}.service"] if self.conducts and run else []
+        hosts_bridge = self.tracking_system is not None and (run or not self.conducts)
+        bridge = [f"{BRIDGE}.service"] if hosts_bridge else []
         return (
             server
             + bridge

@@ -88,7 +88,10 @@ class Plan:
 
 
 class Planner:
-    """Plans for machines. Wheels are fetched for one machine at a time: the next of its kind finds them."""
+    """Plans for machines; with `run` the experiment is to begin at once.
+
+    Wheels are fetched for one machine at a time: the next of its kind finds them.
+    """
 
     def __init__(
         self,
@@ -97,12 +100,15 @@ class Planner:
         version: str,
         experiment: ExperimentFiles | None,
         protection: Protection,
+        *,
+        run: bool,
     ) -> None:
         self._laboratory = laboratory
         self._wheelhouse = wheelhouse
         self._version = version
         self._experiment = experiment
         self._protection = protection
+        self._run = run
         self._one_at_a_time = asyncio.Lock()
 
     async def plan(self, target: Target, found: Mapping[str, Any]) -> Plan:
@@ -152,8 +158,9 @@ class Planner:
     def _services(self, target: Target, about: Mapping[str, Any]) -> list[str]:
         """Of the experiment, or of what runs there now what still belongs there."""
         if self._experiment:
-            return target.services([robot.id for robot in self._experiment.experiment.robot])
-        everything = target.services([robot.id for robot in target.robots])
+            robots = [robot.id for robot in self._experiment.experiment.robot]
+            return target.services(robots, self._run)
+        everything = target.services([robot.id for robot in target.robots], run=True)
         return [name for name in everything if name in about["services"]]
 
 

@@ -46,7 +46,7 @@ class FilmRequest:
     trial: int = 0
     seconds: float = 30.0
     """How long the film takes."""
-    frames_per_s: int = 25
+    frames_per_s: int = 15
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +17,13 @@ import numpy as np
 import polars as pl
 
 from swarm.files import printable
-from swarm.logs.completeness import HealthTable, health_totals
-from swarm.logs.ending import COMPLETE, Ending
+from swarm.logs.chain import Chain
+from swarm.logs.completeness import HealthTable, Hole, health_totals
+from swarm.logs.ending import COMPLETE, CONTINUED, Ending
 from swarm.logs.identity import LogIdentity, identity_of
 from swarm.logs.reader import LogReader, Part
 from swarm.logs.tables import is_tabled, rows
-from swarm.logs.trial_logs import as_one, by_trial, logs_in
+from swarm.logs.trial_logs import as_one, by_trial, logs_in, misplaced
 from swarm.messages import topics
 from swarm.messages.validation import MAX_T_NS
 
@@ -39,6 +41,16 @@ class LogCheck:
     """Why it is not complete: learning events lost, or no telling whether any are."""
     remarks: list[str]
     """What is worth knowing and no fault: restarts, states of which only the newest counts, slow keys."""
+    events: int
+    """Messages that must not be lost, as far as it is known that they were sent."""
+    holes: list[Hole]
+    """Where some of these are missing."""
+
+    @property
+    def share(self) -> float:
+        """How many of these are there."""
+        missing = sum(hole.last - hole.first + 1 for hole in self.holes)
+        return 1 - missing / self.events if self.events else 1.0
 
     @property
     def faults(self) -> list[str]:
@@ -60,6 +72,9 @@ class LogCheck:
             "indexed": self.indexed,
             "faults": self.faults,
             "remarks": self.remarks,
+            "events": self.events,
+            "share": self.share,
+            "holes": [vars(hole) for hole in self.holes],
         }
 
 
@@ -68,6 +83,8 @@ class _Contents:
     """What the messages of a trial's logs tell themselves, part by part."""
 
     health: HealthTable
+    begins: bool
+    """Whether the trial begins with these logs."""
     times: dict[str, str] = field(default_factory=dict)
     """key -> what is wrong with its times."""
     moves: dict[str, set[int]] = field(default_factory=dict)
@@ -80,7 +97,7 @@ class _Contents:
             found = rows(part, log)
             rejected = len(found.rejected)
             if part.channel.topic is topics.MOVE:
-                self.moves.setdefault(key, set()).update(found.tables[0].frame["number"])
+                self.moves.setdefault(key, set()).update(set(found.tables[0].frame["number"]) - {0})
         self.health.add(as_one(part, log), rejected)
         self._add_times(part)
 
@@ -98,60 +115,83 @@ class _Contents:
 
     def swallowed_moves(self, missing: Mapping[str, int]) -> list[str]:
         """What a restart swallowed, beyond the messages known to be missing: the trial numbers its moves."""
-        counts = {key: max(found) - len(found - {0}) for key, found in self.moves.items() if found}
+        counts = {key: self._span(found) - len(found) for key, found in self.moves.items() if found}
         return [
             f"{key}: {count} moves missing"
             for key, count in sorted(counts.items())
             if count > missing.get(key, 0)
         ]
 
+    def _span(self, numbers: set[int]) -> int:
+        """How many moves there should be, from the first to the last."""
+        return max(numbers) - (0 if self.begins else min(numbers) - 1)
+
 
 def check_log(path: Path) -> LogCheck:
-    """Read every byte and decode every message; LogError for what is no log of a run."""
+    """Read every byte and decode every message; LogError for what is no log of a run.
+
+    One of several logs of a trial is checked by itself.
+    """
     about = LogReader(path)
     about.read_metadata()
-    return _checked([identity_of(about)])
+    identity = identity_of(about)
+    return _checked([identity], [] if identity.ending.state == CONTINUED else [identity.ending.fault])
 
 
 def check_run(run: Path) -> list[LogCheck]:
     """The trials of a run directory, each with all of its logs: what is missing between them is missing."""
-    return [_checked(parts) for parts in by_trial(logs_in(run, []))]
+    logs = logs_in(run, [])
+    return [_checked(parts, [*misplaced(parts, logs[0]), parts[0].ending.fault]) for parts in by_trial(logs)]
 
 
-def _checked(parts: list[LogIdentity]) -> LogCheck:
-    contents = _Contents(HealthTable(parts[0]))
-    readers = [_read(part, contents) for part in parts]
+def _checked(parts: list[LogIdentity], about: list[str]) -> LogCheck:
+    """`about`: why the logs as a whole are not those of a complete trial; empty texts say nothing."""
+    contents = _Contents(HealthTable(parts[0]), begins=parts[0].part == 1)
+    read = [_read(part, contents) for part in parts]
+    readers = [reader for reader, _ in read]
     found = contents.health.frame()
-    damage = [fault for reader in readers for fault in _damage(reader, named=len(parts) > 1)]
+    damage = [fault for each in read for fault in _damage(*each, named=len(parts) > 1)]
+    damage += _unlinked(parts)
     return LogCheck(
         parts[0].path,
         sum(reader.messages for reader in readers),
         all(reader.recorded_messages is not None for reader in readers),
         [*damage, *contents.damage(), *_bad_messages(found)],
-        [*_lacking(parts[0].ending, found, contents)],
+        [*filter(None, about), *_lacking(parts[0].ending, found, contents)],
         _remarks(found),
+        _events(found),
+        contents.health.holes(),
     )
 
 
-def _read(identity: LogIdentity, contents: _Contents) -> LogReader:
-    reader = LogReader(identity.path, is_tabled)
+def _read(identity: LogIdentity, contents: _Contents) -> tuple[LogReader, str]:
+    """The log, read to its end, and what its hash chain says against it; empty if nothing."""
+    chain = Chain(identity.first_link)
+    reader = LogReader(identity.path, is_tabled, chain)
     for part in reader.parts():
         contents.add(part, identity)
-    return reader
+    differs = identity.last_link not in ("", chain.link) and not reader.damage
+    return reader, "the chunks are not those that were recorded (hash chain)" if differs else ""
+
+
+def _unlinked(parts: list[LogIdentity]) -> Iterator[str]:
+    """Logs that do not go on from the one before them, as far as both say so."""
+    for before, after in pairwise(parts):
+        known = after.part == before.part + 1 and after.first_link and before.last_link
+        if known and after.first_link != before.last_link:
+            yield f"{after.path.name} does not go on from {before.path.name} (hash chain)"
 
 
 def _lacking(ending: Ending, health: pl.DataFrame, contents: _Contents) -> Iterator[str]:
-    if ending.fault:
-        yield ending.fault
     yield from _missing(health)
     yield from contents.swallowed_moves(dict(health.group_by("key").agg(pl.col("missing").sum()).iter_rows()))
     if ending.state == COMPLETE:
         yield from _unaccounted(health)
 
 
-def _damage(reader: LogReader, *, named: bool) -> list[str]:
+def _damage(reader: LogReader, by_chain: str, *, named: bool) -> list[str]:
     """Why a log is not sound by its own bytes; `named`: with the file's name."""
-    found = [*map(str, reader.damage), *reader.unverified]
+    found = [*map(str, reader.damage), *reader.unverified, *filter(None, [by_chain])]
     if reader.recorded_messages is None and not found:
         found.append("the log has no index")
     return [f"{printable(Path(reader.path.name))}: {fault}" for fault in found] if named else found
@@ -165,9 +205,21 @@ def _missing(health: pl.DataFrame) -> list[str]:
     return _counts(health.filter(_is_event()), "missing", "messages missing")
 
 
+def _events(health: pl.DataFrame) -> int:
+    events = health.filter(_is_event())
+    return int((events["messages"] - events["duplicates"] + events["missing"]).sum())
+
+
+def _silent(health: pl.DataFrame) -> pl.DataFrame:
+    """Senders of learning events that do not say how many they sent: robot and epoch."""
+    return health.filter(_is_event() & pl.col("sent").is_null()).unique(["robot", "epoch"])
+
+
 def _unaccounted(health: pl.DataFrame) -> Iterator[str]:
-    """Senders of learning events that do not say how many they sent."""
-    silent = health.filter(_is_event() & pl.col("sent").is_null()).unique(["robot", "epoch"])
+    """Senders of learning events that do not say how many they sent. (Of a server that was killed it is known
+    that it said nothing.)
+    """
+    silent = _silent(health).filter(pl.col("robot") != "server")
     for robot, starts in silent.group_by("robot").len().sort("robot").iter_rows():
         again = f" in {starts} starts" if starts > 1 else ""
         yield f"{robot}: gave no account of how much it sent{again}, so that its last messages may be missing"
@@ -185,6 +237,8 @@ def _remarks(health: pl.DataFrame) -> list[str]:
     remarks = _counts(health.filter(~_is_event()), "missing", "messages missing")
     remarks += [f"{key}: below half of its declared rate" for key in totals["slow_keys"]]
     remarks += [f"{key}: of a type that is not known here" for key in totals["unreadable_keys"]]
+    if "server" in _silent(health)["robot"]:
+        remarks.append("server: killed, and what it said itself in its last moment may be missing")
     restarted = health.filter(pl.col("restart") > 0)["robot"].unique().sort()
     return remarks + [f"{robot}: restarted during the trial" for robot in restarted]
 

@@ -1,12 +1,13 @@
 """How complete a log is: for each key and each start of its sender, what was seen and what is missing.
 
 A sender numbers its messages of a key from 1. So every number up to the last must be there; the last one is
-what the sender says in its closing account, and without one at least the last that was seen.
+what the sender says in its closing account, and without one at least the last that was seen. A log that goes
+on from others is asked for what comes after them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,7 +18,7 @@ import polars as pl
 from swarm.logs.ending import COMPLETE, Sender
 from swarm.logs.identity import LogIdentity
 from swarm.logs.reader import S_PER_NS, LogChannel, Part
-from swarm.messages.topics import topic_of
+from swarm.messages.topics import Delivery, topic_of
 
 HEALTH_SCHEMA: dict[str, Any] = {
     "log": pl.String,
@@ -44,6 +45,26 @@ HEALTH_SCHEMA: dict[str, Any] = {
 }
 
 
+@dataclass(frozen=True)
+class Hole:
+    """Messages of a sender that are missing: numbers `first` to `last`."""
+
+    key: str
+    epoch: int
+    first: int
+    last: int
+    after_t_ns: int | None
+    """When the message before was sent; None if there is none."""
+    before_t_ns: int | None
+    """When the next one was sent; None if there is none."""
+
+    def __str__(self) -> str:
+        after = "the beginning" if self.after_t_ns is None else f"{self.after_t_ns * S_PER_NS:.3f} s"
+        before = "the end" if self.before_t_ns is None else f"{self.before_t_ns * S_PER_NS:.3f} s"
+        numbers = str(self.first) if self.first == self.last else f"{self.first} to {self.last}"
+        return f"{self.key}: {numbers}, between {after} and {before}"
+
+
 @dataclass
 class HealthTable:
     """Fills from the parts of a trial's log, or of all its logs; needs no payload."""
@@ -67,7 +88,7 @@ class HealthTable:
         """A row for each key and epoch, in order; `restart` counts a key's epochs from 0.
 
         `sent` is the last number by the sender's own account, null if it gave none. `missing` messages, in
-        `gaps` stretches, are those from 1 to the last.
+        `gaps` stretches, are those from 1 (or from where the trial's logs before this one end) to the last.
         """
         channels = sorted(self._all_channels(), key=lambda channel: (channel.key, channel.epoch, channel.id))
         restarts: dict[str, int] = {}
@@ -79,15 +100,42 @@ class HealthTable:
             [{name: row[name] for name in HEALTH_SCHEMA} for row in found], schema=HEALTH_SCHEMA
         )
 
+    def holes(self) -> list[Hole]:
+        """Where messages are missing that must not be lost."""
+        return [
+            hole
+            for channel in sorted(self._all_channels(), key=lambda channel: (channel.key, channel.epoch))
+            if (topic := topic_of(channel.key)) and topic[0].delivery is Delivery.EVERY
+            for hole in self._holes_of(channel)
+        ]
+
+    def _holes_of(self, channel: LogChannel) -> Iterator[Hole]:
+        sender = (channel.key, channel.epoch)
+        numbers = np.concatenate(self._sequences.get(channel, [np.empty(0, dtype=np.uint32)]))
+        once, places = np.unique(numbers, return_index=True)
+        t_ns = np.concatenate(self._times.get(channel, [np.empty(0, dtype=np.int64)]))[places]
+        edge = max(self.identity.before.get(sender, 0), self._sent.get(sender, 0), *once[-1:].tolist(), 0) + 1
+        known = [self.identity.before.get(sender, 0), *once.tolist(), edge]
+        times: list[int | None] = [None, *t_ns.tolist(), None]
+        for place in np.flatnonzero(np.diff(known) > 1).tolist():
+            first, last = known[place] + 1, known[place + 1] - 1
+            yield Hole(*sender, first, last, times[place], times[place + 1])
+
     def _all_channels(self) -> list[LogChannel]:
         """Those seen, and those of which a sender says that they should have been."""
         seen = {(channel.key, channel.epoch) for channel in self._sequences}
-        unseen = [sender for sender, last in self._sent.items() if last > 0 and sender not in seen]
+        before = self.identity.before
+        unseen = [
+            sender
+            for sender, last in self._sent.items()
+            if last > before.get(sender, 0) and sender not in seen
+        ]
         return [*self._sequences, *(LogChannel(0, key, epoch, "", "") for key, epoch in unseen)]
 
     def _row(self, channel: LogChannel) -> dict[str, Any]:
         topic = topic_of(channel.key)
-        sent = self._sent.get((channel.key, channel.epoch))
+        sender = (channel.key, channel.epoch)
+        sent = self._sent.get(sender)
         none = [np.empty(0, dtype=np.uint32)]
         return {
             "log": self.identity.trial_log,
@@ -101,16 +149,20 @@ class HealthTable:
             "rejected": self._rejected.get(channel, 0),
             "readable": channel.topic is not None or channel.is_for_viewers or channel.id == 0,
             "sent": sent,
-            **_numbers(np.concatenate(self._sequences.get(channel, none)), sent or 0),
+            **_numbers(
+                np.concatenate(self._sequences.get(channel, none)),
+                self.identity.before.get(sender, 0),
+                sent or 0,
+            ),
             **_rates(np.concatenate(self._times.get(channel, [np.empty(0, dtype=np.int64)]))),
         }
 
 
-def _numbers(sequence: npt.NDArray[np.uint32], sent: int) -> dict[str, int | None]:
-    """What the sequence numbers, in the order of the log, tell; `sent` is the last that there must be."""
+def _numbers(sequence: npt.NDArray[np.uint32], before: int, sent: int) -> dict[str, int | None]:
+    """What sequence numbers, in the order of the log, tell; those from `before` to `sent` must be there."""
     once = np.unique(sequence).astype(np.int64)
-    last = max(sent, int(once[-1]) if len(once) else 0)
-    steps = np.diff(once, prepend=0, append=last + 1)
+    last = max(before, sent, int(once[-1]) if len(once) else 0)
+    steps = np.diff(once, prepend=before, append=last + 1)
     return {
         "messages": len(sequence),
         "first_sequence": int(once[0]) if len(once) else None,

@@ -6,15 +6,24 @@ process's whole output; in real time each process gives an account of what it se
 without them was cut short, or its server was killed. `received`, in real time only, has "ROBOT,... EPOCH KEY
 SENDER'S-EPOCH" -> "MESSAGES BYTES": what reached each process of robots. `recovered` is in a log that
 `swarm recover` made.
+
+A later log of a trial has `before`: the last numbers that stand in the logs before it. So each of them can be
+checked by itself.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 END, SENT, RECEIVED, RECOVERED = "end", "sent", "received", "recovered"
+BEFORE, ACCOUNT = "before", "account"
 COMPLETE = "complete"
+CONTINUED = "continued"
+"""Of a log that was closed before its trial was over: the next one goes on."""
+KILLED = {"state": "interrupted", "reason": "its server was killed"}
+"""What is put into the log of a server that could not say how the trial ended."""
 MAX_NUMBER = 2**32 - 1
 """Sequence numbers have 32 bits in a log."""
 Sender = tuple[str, int]
@@ -65,6 +74,8 @@ class Ending:
             return f"recovered from a damaged log: {self.lost}"
         if not self.state:
             return "how the trial ended is not recorded: its server was killed, or the log is cut short"
+        if self.state == CONTINUED:
+            return "the trial goes on in a later log, which is not here"
         return "" if self.state == COMPLETE else f"the trial was {self.state}: {self.reason}"
 
 
@@ -81,14 +92,25 @@ def last_of(endings: Sequence[Ending]) -> Ending:
 def ending_of(metadata: Mapping[str, Mapping[str, str]]) -> Ending:
     """What the metadata of a log say of its end."""
     end = metadata.get(END, {})
-    sent = {}
-    for name, number in metadata.get(SENT, {}).items():
-        key, _, epoch = name.rpartition(" ")
-        if key and _is_number(epoch) and _is_number(number) and int(number) <= MAX_NUMBER:
-            sent[key, int(epoch)] = int(number)
     lost = metadata.get(RECOVERED, {}).get("lost", "")
+    sent = numbers_of(metadata.get(SENT, {}))
     receipts = tuple(_receipts(metadata.get(RECEIVED, {})))
     return Ending(end.get("state", ""), end.get("reason", ""), sent, receipts, lost)
+
+
+def numbers_of(record: Mapping[str, str]) -> dict[Sender, int]:
+    """A number for each sender, from a metadata record; what makes no sense is left out."""
+    numbers = {}
+    for name, number in record.items():
+        key, _, epoch = name.rpartition(" ")
+        if key and _is_number(epoch) and _is_number(number) and int(number) <= MAX_NUMBER:
+            numbers[key, int(epoch)] = int(number)
+    return numbers
+
+
+def numbers_record(numbers: Mapping[Sender, int]) -> dict[str, str]:
+    """The metadata record of a number for each sender."""
+    return {f"{key} {epoch}": str(number) for (key, epoch), number in sorted(numbers.items())}
 
 
 def _receipts(record: Mapping[str, str]) -> Iterator[Receipt]:
@@ -104,13 +126,33 @@ def ending_records(
     state: str, reason: str, sent: Mapping[Sender, int], receipts: Sequence[Receipt] = ()
 ) -> dict[str, dict[str, str]]:
     """The metadata records of an ending; nothing is said of receipts if there are none."""
-    numbers = {f"{key} {epoch}": str(number) for (key, epoch), number in sorted(sent.items())}
     received = {
         f"{','.join(one.robots)} {one.epoch} {one.key} {one.sender}": f"{one.messages} {one.bytes}"
         for one in receipts
     }
-    ending = {END: {"state": state, "reason": reason}, SENT: numbers}
+    ending = {END: {"state": state, "reason": reason}, SENT: numbers_record(sent)}
     return ending | ({RECEIVED: received} if received else {})
+
+
+def account_record(
+    received: Mapping[Sender, int],
+    last: Mapping[Sender, int],
+    before: Mapping[Sender, int],
+    recovered: Mapping[Sender, int],
+) -> dict[str, str]:
+    """The metadata record `account` of a log: for each sender how many of its messages are in it, how many of
+    those this server has had to ask for so far, and how many are lost between the first and the last.
+    """
+    return {
+        f"{sender[0]} {sender[1]}": json.dumps(
+            {
+                "received": received.get(sender, 0),
+                "recovered": recovered.get(sender, 0),
+                "lost": max(0, number - before.get(sender, 0) - received.get(sender, 0)),
+            }
+        )
+        for sender, number in sorted(last.items())
+    }
 
 
 def _is_number(text: str) -> bool:

@@ -12,6 +12,7 @@ from swarm.errors import UserError
 from swarm.files import new_folder
 from swarm.logs.identity import identify
 from swarm.logs.parquet import read_logs
+from swarm.logs.trial_logs import joined, logs_of_trial
 from swarm.table_files import write_table
 
 
@@ -24,17 +25,17 @@ class Format(StrEnum):
 
 
 def export_log(log: Path, to: Format, out: Path) -> list[Path]:
-    """Write a log into a new folder, whole or not at all; the files that were made, in order."""
+    """Write a log, or all logs of a trial, into a new folder, whole or not at all; the files, in order."""
     if out.exists():
         raise UserError(f"{out}: exists already; nothing is overwritten, choose another --out")
-    identity = identify(log)
+    logs = joined(map(identify, logs_of_trial([log])))
     if to is Format.ROSBAG2:
         from swarm.logs.rosbag2 import write_bag
 
-        return write_bag(log, out)
+        return write_bag([each.path for each in logs], out)
     new_folder(out)
     try:
-        tables = sorted(read_logs([identity], out, sampled=True, show=lambda _: None).tables.values())
+        tables = sorted(read_logs(logs, out, sampled=True, show=lambda _: None).tables.values())
         return [_as_csv(table) for table in tables] if to is Format.CSV else tables
     except BaseException:
         shutil.rmtree(out)

@@ -6,6 +6,7 @@ chunk is read again, and of it only what is new, until another record stands beh
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
@@ -47,6 +48,8 @@ class LogFollower:
         self._at = len(MAGIC)
         self._taken: dict[int, int] = {}
         """Messages of each channel that were given of the chunk that is read next."""
+        self._seen = (0, 0)
+        """Size and time of change of the file when its last chunk was read."""
         self._schemas: dict[int, str] = {}
         self._channels: dict[int, LogChannel] = {}
         if self._file.read(len(MAGIC)) != MAGIC:
@@ -70,8 +73,9 @@ class LogFollower:
 
     def read(self) -> Iterator[list[Timed]]:
         """What is new, a chunk at a time. LogError if the log is damaged before its end."""
-        while not self.ended:
-            size = size_of(self._file)  # Looked at first: a chunk that grows meanwhile is still the last.
+        while not self.ended and (state := self._state()) != self._seen:
+            # Looked at first: a chunk that grows meanwhile is still the last.
+            size, _ = state
             try:
                 frame = frame_at(self._file, self._at, size)
                 found = self._of(frame)
@@ -79,13 +83,18 @@ class LogFollower:
                 self._forgive(error)
                 return
             is_last = frame.end_bytes >= size
-            if not is_last:
+            if is_last:
+                self._seen = state
+            else:
                 self.ended = frame.opcode == Opcode.DATA_END
                 self._at, self._taken = frame.end_bytes, {}
             if found:
                 yield found
-            if is_last:
-                return
+
+    def _state(self) -> tuple[int, int]:
+        """The file's size in bytes, and when it was changed."""
+        now = os.fstat(self._file.fileno())
+        return now.st_size, now.st_mtime_ns
 
     def _forgive(self, error: Exception) -> None:
         """What is being written may be cut off anywhere. Before the end of a closed log nothing may."""

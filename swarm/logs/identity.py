@@ -12,7 +12,8 @@ from pathlib import Path
 from swarm.config.experiment import ArenaSettings, Role
 from swarm.files import printable
 from swarm.geometry import Grid
-from swarm.logs.ending import Ending, ending_of
+from swarm.logs.chain import first_link, last_link
+from swarm.logs.ending import BEFORE, Ending, Sender, ending_of, numbers_of
 from swarm.logs.reader import LogError, LogReader, open_log
 
 UNKNOWN = "unknown"
@@ -44,7 +45,13 @@ class LogIdentity:
     run_id: str = ""
     """Of a run that others could join; empty for a simulation's lockstep."""
     part: int = 1
-    """Which of the trial's logs this is: every server that went on with the trial wrote one."""
+    """Which of the trial's logs this is, from 1."""
+    before: Mapping[Sender, int] = field(default_factory=dict)
+    """The last number of each sender in the trial's logs before this one."""
+    first_link: str = ""
+    """Of the hash chain that it goes on from; empty if from none."""
+    last_link: str = ""
+    """Of its hash chain; empty if it was not finished."""
     first_part: Path | None = None
     """The log that this one goes on from, once the logs of a trial were put together."""
 
@@ -106,6 +113,9 @@ def identity_of(reader: LogReader) -> LogIdentity:
             ending=ending_of(metadata),
             run_id=run.get("id", ""),
             part=_count(run.get("part", "1")),
+            before=numbers_of(metadata.get(BEFORE, {})),
+            first_link=first_link(metadata),
+            last_link=last_link(metadata),
         )
     except (KeyError, ValueError) as error:
         reason = "does not say which run and trial it holds: was it recorded by swarm-server?"

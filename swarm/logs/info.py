@@ -16,6 +16,7 @@ from swarm.errors import UserError
 from swarm.files import printable
 from swarm.logs.ending import ending_of
 from swarm.logs.reader import LogChannel, LogReader, nothing
+from swarm.logs.trial_logs import OPEN_SUFFIX
 
 CLOSED, OPEN, DAMAGED = "closed", "open", "damaged"
 
@@ -105,11 +106,16 @@ def logs_named(places: Iterable[Path]) -> list[Path]:
     """Files as they are, and of directories every .mcap file in them; UserError for a directory without."""
     found = []
     for place in places:
-        logs = sorted(place.glob("*.mcap")) if place.is_dir() else [place]
+        logs = _logs_below(place) if place.is_dir() else [place]
         if not logs:
             raise UserError(f"{place}: holds no log (*.mcap); is it a run directory?")
         found += logs
     return found
+
+
+def _logs_below(directory: Path) -> list[Path]:
+    """Those that are being written, too."""
+    return sorted(path for pattern in ("*.mcap", f"*.mcap{OPEN_SUFFIX}") for path in directory.glob(pattern))
 
 
 def _by_index(path: Path) -> LogInfo | None:

@@ -19,6 +19,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Message, Metadata, Schema, Statistics
 
 from swarm.errors import UserError
+from swarm.logs.chain import CHAIN, CONTINUES, Chain
 from swarm.logs.mcap_chunks import Entry, split
 from swarm.logs.mcap_index import read_index
 from swarm.logs.mcap_records import (
@@ -137,7 +138,7 @@ def nothing(channel: LogChannel) -> bool:
 
 MAX_EPOCH = 2**63 - 1
 """The largest that the tables' signed columns hold."""
-SAID_ONCE = ("run", "robots", "experiment", "versions", "end", "sent", "received")
+SAID_ONCE = ("run", "robots", "experiment", "versions", "end", "sent", "received", CHAIN, CONTINUES)
 """Metadata of this project's recorder. Other programs give the same name to several records."""
 
 
@@ -165,11 +166,12 @@ class Damage:
 class LogReader:
     """Reads one log once, from front to back.
 
-    `wanted` says which channels' payloads are needed; of the others only numbers and times are kept.
-    What the log says of itself fills while `parts` is gone through and is complete afterwards.
+    `wanted` says which channels' payloads are needed; of the others only numbers and times are kept. `chain`
+    grows with the chunks, to be compared. What the log says of itself fills while `parts` is gone through and
+    is complete afterwards.
     """
 
-    def __init__(self, path: Path, wanted: Wanted = everything) -> None:
+    def __init__(self, path: Path, wanted: Wanted = everything, chain: Chain | None = None) -> None:
         self.path = path
         self.metadata: dict[str, dict[str, str]] = {}
         self.channels: dict[int, LogChannel] = {}
@@ -182,6 +184,7 @@ class LogReader:
         self.recorded_messages: int | None = None
         """As the log's index says; None if it has none, as when the recorder was killed."""
         self._wanted = wanted
+        self._chain = chain
         self._definitions = Definitions()
         self._pending: dict[int, PendingPart] = {}
 
@@ -247,6 +250,8 @@ class LogReader:
 
     def _contents(self, record: Record) -> Iterator[Part]:
         if record.opcode == Opcode.CHUNK:
+            if self._chain:
+                self._chain.add(record.body)
             content = split(record.body)
             for definition in content.definitions:
                 self._define(decoded(definition.opcode, definition.body))

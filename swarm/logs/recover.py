@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -13,12 +13,14 @@ from mcap.records import Attachment, Channel, Message, Metadata, Schema
 
 from swarm.errors import RunFailedError
 from swarm.files import new_file
-from swarm.logs.ending import RECOVERED
+from swarm.logs.chain import CHAIN
+from swarm.logs.ending import END, KILLED, RECOVERED
 from swarm.logs.mcap_chunks import places
 from swarm.logs.mcap_records import BROKEN, BrokenRecordError, FramingError, Record, decoded
 from swarm.logs.mcap_walk import Walk
 from swarm.logs.mcap_writer import LogWriter
 from swarm.logs.reader import Damage, Definitions, LogError, open_log
+from swarm.logs.trial_logs import closed_path
 
 
 @dataclass(frozen=True)
@@ -28,10 +30,38 @@ class Recovery:
     messages: int
     lost: list[Damage]
 
+    @property
+    def is_cut(self) -> bool:
+        """Whether nothing is missing but what would have followed: as of a log whose writer was killed."""
+        return all(damage.messages == self.messages for damage in self.lost)
 
-def recover_log(damaged: Path, whole: Path) -> Recovery:
+
+def close_log(left: Path, end: Mapping[str, str] = KILLED) -> None:
+    """Close the log that a killed server left open: all of it that is whole, in a file of its own name.
+
+    `end` is what is said of how it ended, unless it says so itself. The open file goes, unless it is damaged
+    in its midst. RunFailedError if there is no room.
+    """
+    whole = closed_path(left)
+    if not whole.exists():
+        beside = whole.with_name(f".{whole.name}.closing")
+        beside.unlink(missing_ok=True)
+        try:
+            recovery = recover_log(left, beside, end)
+        except LogError:  # The server was killed in its first moment: it holds no message.
+            left.unlink()
+            return
+        beside.rename(whole)
+        if not recovery.is_cut:
+            left.rename(whole.with_name(f"{whole.name}.damaged"))
+            return
+    left.unlink()
+
+
+def recover_log(damaged: Path, whole: Path, end: Mapping[str, str] | None = None) -> Recovery:
     """Copy every record that can be read; of a damaged chunk nothing is copied.
 
+    `end` is for a log whose writer is known to have stopped: how it ended, and that it stops is no damage.
     LogError for what is no log or holds no message that can be read, UserError if `whole` cannot be made,
     RunFailedError if there is no room for it.
     """
@@ -39,7 +69,7 @@ def recover_log(damaged: Path, whole: Path) -> Recovery:
         target = new_file(whole)
         try:
             with target:
-                return _recovered(damaged, source, target)
+                return _recovered(damaged, source, target, end)
         except BaseException as error:
             whole.unlink()
             if isinstance(error, OSError):
@@ -47,7 +77,7 @@ def recover_log(damaged: Path, whole: Path) -> Recovery:
             raise
 
 
-def _recovered(damaged: Path, source: BinaryIO, target: BinaryIO) -> Recovery:
+def _recovered(damaged: Path, source: BinaryIO, target: BinaryIO, end: Mapping[str, str] | None) -> Recovery:
     copy = _Copy(target)
     try:
         copy.take_all(source)
@@ -56,10 +86,10 @@ def _recovered(damaged: Path, source: BinaryIO, target: BinaryIO) -> Recovery:
     if copy.messages == 0:
         reason = f": {copy.lost[0]}" if copy.lost else ""
         raise LogError(damaged, f"no message can be read from this log{reason}")
-    copy.finish()
+    copy.finish(end)
     target.flush()
     os.fsync(target.fileno())
-    return Recovery(copy.messages, copy.lost)
+    return copy.recovery
 
 
 class _Copy:
@@ -83,9 +113,16 @@ class _Copy:
         for record in walk.records():
             self._take(record)
 
-    def finish(self) -> None:
+    @property
+    def recovery(self) -> Recovery:
+        """What has come of the log so far."""
+        return Recovery(self.messages, self.lost)
+
+    def finish(self, end: Mapping[str, str] | None) -> None:
         """Say in the log itself what could not be read, and write the index."""
-        if self.lost:
+        if end is not None and END not in self._metadata:
+            self._writer.add_metadata(END, dict(end))
+        if self.lost and (end is None or not self.recovery.is_cut):
             about = {"lost": f"{len(self.lost)} places could not be read, the first: {self.lost[0]}"}
             self._writer.add_metadata(RECOVERED, about)
         self._writer.finish()
@@ -125,6 +162,8 @@ class _Copy:
             elif isinstance(one, Channel) and self._definitions.add(one):
                 about = dict(one.metadata)
                 writer.add_channel(one.id, one.topic, one.message_encoding, one.schema_id, about)
+            elif isinstance(one, Metadata) and one.name == CHAIN:
+                continue  # The new log has other chunks, and a chain of its own.
             elif isinstance(one, Metadata) and one not in self._metadata.setdefault(one.name, []):
                 self._metadata[one.name].append(one)
                 writer.add_metadata(one.name, dict(one.metadata))

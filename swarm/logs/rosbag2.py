@@ -6,7 +6,7 @@ The `rosbags` package writes it; no installation of ROS is needed.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -36,13 +36,14 @@ class Line(NamedTuple):
     data: bytes
 
 
-def write_bag(log: Path, out: Path) -> list[Path]:
+def write_bag(logs: Sequence[Path], out: Path) -> list[Path]:
     """A bag in a new folder: each message under its key, at the time at which it was recorded.
 
     A part of the log at a time, so that memory stays small: a bag's index, not its order, tells the times.
     """
-    reader = LogReader(log, lambda channel: channel.topic is not None)
-    lines = (line for part in reader.parts() if part.payloads for line in _lines(part))
+    readers = [LogReader(log, lambda channel: channel.topic is not None) for log in logs]
+    parts = (part for reader in readers for part in reader.parts() if part.payloads)
+    lines = (line for part in parts for line in _lines(part))
     with Writer(out, version=BAG_VERSION, storage_plugin=StoragePlugin.MCAP) as bag:
         connections: dict[str, Any] = {}
         for line in lines:

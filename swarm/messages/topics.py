@@ -55,6 +55,12 @@ LONG_BYTES = 65_536 + 24
 """With lists of messages: no payload that is larger is decoded. Its header comes beside it."""
 
 
+ROOM_BYTES = 8 << 20
+"""Under one key: 8,000 short messages, or 127 of the longest."""
+KEPT = 900
+"""Half an hour of a robot's moves, which stands while no server is there; what a hub takes in at once."""
+
+
 @dataclass(frozen=True, eq=False)
 class Topic(Generic[M]):
     """One line of the key table: itself and no other. `{robot}` in the pattern stands for a robot's id."""
@@ -82,6 +88,21 @@ class Topic(Generic[M]):
         if any(field.is_repeated or field.type == field.TYPE_STRING for field in fields):
             return MIDDLE_BYTES
         return SHORT_BYTES
+
+    @property
+    def most_waiting(self) -> int:
+        """How many messages under one of its keys wait at most until a server looks."""
+        return ROOM_BYTES // self.largest_bytes
+
+    @property
+    def kept(self) -> int:
+        """How many messages under one of its keys a sender keeps for a server that missed them."""
+        return min(KEPT, self.most_waiting * 9 // 10)
+
+    @property
+    def is_recovered(self) -> bool:
+        """Whether a server asks for what it missed of it."""
+        return self.delivery is Delivery.EVERY and self.sender in (Role.ROBOT, Role.TRACKER)
 
     def key(self, robot: str = "*") -> str:
         """The key of one robot, or with "*" the expression for all of them."""
@@ -196,10 +217,14 @@ TABLE: tuple[Topic[Any], ...] = (
 
 LOCKSTEP_TICK = "lockstep/tick/{process}"
 LOCKSTEP_DONE = "lockstep/done"
+RECOVERY = "{key}/@adv/**"
+"""What a sender and a server say to each other about messages that were missed: Zenoh's own keys."""
 ACCOUNT = "account/{name}"
 """What a process says as it leaves: how many messages of each key it has sent."""
 ALIVE = "alive/{kind}/{name}/{host}/{epoch}/{identity}"
 """Presence (liveliness tokens): kind is robot, tracker, server or process; identity is a fingerprint."""
+EARLIER = {"robot": "earlier-robot", "tracker": "earlier-tracker"}
+"""Kinds of presence of a robot's or tracker's starts that are over: a later one repeats what they said."""
 NO_ROBOT = {topic.pattern.split("/")[0] for topic in TABLE if "{robot}" not in topic.pattern} | {"view"}
 """What the tables of a log call those who are no robot: no robot may be called so. `view` is the server's."""
 VIEW_ARENA, VIEW_ROBOTS, VIEW_LOG = "view/arena", "view/robots", "view/log"

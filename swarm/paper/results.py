@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 TESTED_POINTS = 200
 """Points of a curve that statistics are made of: every 100,000 steps of a run of 20m."""
+WHOLE_RUN_STEPS = 5000
+"""Between the points of a run to 100,000 reachings of the goal: 200 to 300 of them, too."""
 
 
 class Results:
@@ -50,7 +52,7 @@ class Results:
         """
         curves = self.of_learner(condition, None)
         every = self.store.condition(condition).later_every
-        even = curves.times % (every or 1) == 0
+        even = curves.times % (WHOLE_RUN_STEPS if every else 1) == 0
         return replace(curves, times=curves.times[even], values=curves.values[:, even])
 
     def horizon(self, horizon_steps: int) -> int:

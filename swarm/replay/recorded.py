@@ -15,6 +15,7 @@ from swarm.errors import UserError
 from swarm.geometry import MOVES
 from swarm.logs.identity import LogIdentity, identify
 from swarm.logs.reader import LogError, LogReader, Part
+from swarm.logs.trial_logs import logs_of_trial
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages import topics
 from swarm.messages.topics import Topic
@@ -88,7 +89,8 @@ class Recording:
 
 
 def read_recording(logs: Sequence[Path]) -> Recording:
-    """Everything about learning in the log of a trial, or in the logs that it was divided into."""
+    """Everything about learning in the logs of a trial, or in a run directory of one trial."""
+    logs = logs_of_trial(logs)
     identities = [identify(path) for path in logs]
     identity = identities[0]
     for other in identities[1:]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import chain
 from typing import Any, Protocol, TypeVar
 
@@ -21,6 +21,7 @@ from swarm.runtime.link_lag import LinkLag
 from swarm.runtime.liveliness import ALIVE_SERVER, ServerWatch
 from swarm.runtime.receipts import Receipts
 from swarm.runtime.senders import BelievedSenders
+from swarm.runtime.spool import Spool
 from swarm.runtime.subscription import Subscription
 from swarm.runtime.zenoh_session import Inbox, Publisher, Session, WireSample
 
@@ -86,8 +87,9 @@ class Sequencer:
 class LivePublisher:
     """Sends messages over the network, each with its sender's epoch, its number and the time."""
 
-    def __init__(self, session: Session, clock: WallClock, epoch: int) -> None:
+    def __init__(self, session: Session, clock: WallClock, epoch: int, spool: Spool | None = None) -> None:
         self.epoch = epoch
+        self._spool = spool
         self._session = session
         self._clock = clock
         self._sequencer = Sequencer()
@@ -97,11 +99,32 @@ class LivePublisher:
         """Send a message under the topic's key, of a robot if it has one; returns what was sent."""
         key = topic.key(robot)
         header = Header(self.epoch, self._sequencer.following(key), self._clock.now_ns())
-        if key not in self._publishers:
-            self._publishers[key] = self._session.publisher(key, topic.delivery)
-        payload = message.SerializeToString()
-        self._publishers[key].put(payload, attachment=header.pack())
-        return Item(key, header, payload)
+        item = Item(key, header, message.SerializeToString())
+        if self._spool and topic.is_recovered:
+            self._spool.put(item)
+        self._put(item, topic)
+        return item
+
+    def repeat(self, items: Iterable[Item]) -> None:
+        """Send the last that earlier starts have sent, as it was, for a server that missed it."""
+        by_key: dict[str, list[Item]] = {}
+        for item in items:
+            by_key.setdefault(item.key, []).append(item)
+        for key, of_key in by_key.items():
+            if found := topic_of(key):
+                topic, _ = found
+                for item in of_key[-topic.kept :]:
+                    self._put(item, topic)
+
+    def _put(self, item: Item, topic: Topic[Any]) -> None:
+        if item.key not in self._publishers:
+            session = self._session
+            self._publishers[item.key] = (
+                session.keeping_publisher(item.key, topic.kept)
+                if topic.is_recovered
+                else session.publisher(item.key, topic.delivery)
+            )
+        self._publishers[item.key].put(item.payload, attachment=item.header.pack())
 
     @property
     def sent(self) -> Mapping[str, int]:
@@ -109,10 +132,17 @@ class LivePublisher:
         return self._sequencer.last
 
     def give_account(self, name: str, received: Receipts) -> None:
-        """Tell the server, as the last thing, how much has been sent and received."""
-        header = Header(self.epoch, 1, self._clock.now_ns())
+        """Tell the server, as the last thing, how much has been sent and received; before it, what earlier
+        starts of this process have sent of what must not be lost.
+        """
         publisher = self._session.publisher(ACCOUNT.format(name=name), Delivery.EVERY)
-        publisher.put(Account(self.sent, received.counts()).pack(), attachment=header.pack())
+        earlier: dict[int, dict[str, int]] = {}
+        for item in self._spool.left if self._spool else ():
+            earlier.setdefault(item.header.epoch, {})[item.key] = item.header.sequence
+        accounts = [(epoch, Account(sent)) for epoch, sent in earlier.items()]
+        for epoch, account in [*accounts, (self.epoch, Account(self.sent, received.counts()))]:
+            header = Header(epoch, 1, self._clock.now_ns())
+            publisher.put(account.pack(), attachment=header.pack())
 
 
 class LiveNode:
@@ -127,6 +157,7 @@ class LiveNode:
         run_id: str = "",
         say: Callable[[str], None] = lambda text: None,  # noqa: ARG005
         going_on: Callable[[], None] = lambda: None,
+        spool: Spool | None = None,
     ) -> None:
         self.run_id = run_id
         self._going_on = going_on
@@ -137,7 +168,9 @@ class LiveNode:
         self._clocks: dict[str, tuple[int, ClockOffset]] = {}
         self._clock = clock
         self._period_s = period_s
-        self._live = LivePublisher(session, clock, epoch)
+        self._live = LivePublisher(session, clock, epoch, spool)
+        if spool:
+            self._live.repeat(spool.left)
         self._lag = LinkLag(clock.speed)
         self._inboxes: list[tuple[Inbox, Subscription[Any], deque[WireSample]]] = []
         self._first_inbox: dict[str, int] = {}

@@ -15,6 +15,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
@@ -24,12 +25,14 @@ from swarm.config import arguments as values
 from swarm.config.changes import add_set_option
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
+from swarm.messages.topics import EARLIER
 from swarm.runtime.endpoint import DEFAULT_ENDPOINT
 from swarm.runtime.handshake import agreed_run
 from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import NO_IDENTITY, Presence, claim
 from swarm.runtime.lockstep import EPOCH, LockstepNode, patient
 from swarm.runtime.node import LiveNode, Node
+from swarm.runtime.spool import Spool
 from swarm.runtime.zenoh_session import Session, SessionSettings
 from swarm.services.notification import ServiceManager
 from swarm.version import version_text
@@ -74,6 +77,7 @@ def add_common_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--connect", default=DEFAULT_ENDPOINT, metavar="tls/HOST:PORT", help="the server (%(default)s)"
     )
+    parser.set_defaults(state=None)
     add_protection_arguments(parser)
     simulated = parser.add_argument_group("simulation", "the server gives these to the processes it starts")
     simulated.add_argument("--process", default="", help="the name of this process in a lockstep run")
@@ -145,11 +149,29 @@ def joined(
             say(f"connected to the server at {settings.endpoint}")
             simulated = arguments.started_ns
             clock = scaled_clock(simulated, arguments.speed) if simulated else unix_clock()
-            node = LiveNode(session, clock, period_s, epoch, run_id, say, going_on)
+            presence = Presence(kind, "", socket.gethostname(), epoch, shown)
+            spool = _spool(arguments, session, presence, names, run_id)
+            node = LiveNode(session, clock, period_s, epoch, run_id, say, going_on, spool)
             try:
                 yield node
             finally:
                 node.give_account(names[0])
+                if spool:
+                    spool.close()
+
+
+def _spool(
+    arguments: argparse.Namespace, session: Session, presence: Presence, names: list[str], run_id: str
+) -> Spool | None:
+    """What this process keeps on its disk if it has a place there; it speaks for its earlier starts, too."""
+    if not (arguments.state and run_id and presence.kind in EARLIER):
+        return None
+    spool = Spool(arguments.state, names[0], run_id, _say)
+    for name in names:
+        for epoch in spool.epochs:
+            earlier = replace(presence, kind=EARLIER[presence.kind], name=name, epoch=epoch)
+            session.declare_alive(earlier.key)
+    return spool
 
 
 def leave_with_parent() -> None:

@@ -26,6 +26,9 @@ from swarm.runtime.endpoint import check_endpoint, check_protection
 
 if TYPE_CHECKING:
     import zenoh
+    from zenoh.ext import AdvancedPublisher, AdvancedSubscriber
+
+    Samples = zenoh.handlers.Handler[zenoh.Sample]
 
 ONE_THREAD = (
     "(rx:(handover:app),tx:(handover:app),acc:(handover:app),net:(handover:app),app:(worker_threads:1))"
@@ -43,6 +46,8 @@ QUESTIONS_WAITING = 256
 LARGEST_MESSAGE_BYTES = 16 << 20
 """What a session takes in: thrice an exchange of 1000 robots in lockstep. Zenoh would put 1 GiB together
 before anybody could refuse it."""
+HEARTBEAT_S = 0.5
+"""After a publisher's last message it says so often, for a while, what its number was."""
 WAIT_FOR_ROOM_S = 5.0
 """What must not be dropped waits so long for room, or as long as the lease; then Zenoh reconnects."""
 
@@ -81,13 +86,13 @@ class WireSample:
 class Inbox:
     """Samples of one subscription, polled by the main loop."""
 
-    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
+    def __init__(self, subscriber: zenoh.Subscriber[Samples] | AdvancedSubscriber[Samples]) -> None:
         self._subscriber = subscriber
 
-    def poll(self) -> list[WireSample]:
-        """What has arrived since the last call, in order; of more than `MOST_AT_ONCE` the rest comes next."""
+    def poll(self, most: int = MOST_AT_ONCE) -> list[WireSample]:
+        """What has arrived since the last call, in order; of more than `most` the rest comes next."""
         samples: list[WireSample] = []
-        while len(samples) < MOST_AT_ONCE and (sample := self._subscriber.try_recv()) is not None:
+        while len(samples) < most and (sample := self._subscriber.try_recv()) is not None:
             samples.append(_sample(sample))
         return samples
 
@@ -124,7 +129,7 @@ class Questions:
 class PresenceWatch:
     """The presence keys that have appeared and vanished, polled by the main loop."""
 
-    def __init__(self, subscriber: zenoh.Subscriber[zenoh.handlers.Handler[zenoh.Sample]]) -> None:
+    def __init__(self, subscriber: zenoh.Subscriber[Samples]) -> None:
         self._subscriber = subscriber
 
     def poll(self) -> list[tuple[str, bool]]:
@@ -144,7 +149,7 @@ class Put(Protocol):
 class Publisher:
     """Puts payloads under one key."""
 
-    def __init__(self, publisher: zenoh.Publisher) -> None:
+    def __init__(self, publisher: zenoh.Publisher | AdvancedPublisher) -> None:
         self.put: Put = publisher.put
         """Zenoh's own, without a call in between, which would show in the pace of a lockstep."""
 
@@ -164,6 +169,7 @@ class Session:
         if not settings.limits:
             os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
         import zenoh
+        import zenoh.ext
 
         zenoh.init_log_from_env_or(ZENOH_SAYS)
         self.endpoint = settings.endpoint
@@ -171,6 +177,7 @@ class Session:
         self._tokens: list[zenoh.LivelinessToken] = []
         self._listening: list[zenoh.Subscriber[None]] = []
         self._answering: list[zenoh.Queryable[None]] = []
+        self._recovering: list[AdvancedSubscriber[Samples]] = []
         try:
             self._session = in_background(partial(_opened, settings), waiting)
         except zenoh.ZError as error:
@@ -191,6 +198,8 @@ class Session:
         atexit.unregister(self.close)
         if not self._session.is_closed():
             with suppress(self._zenoh.ZError):
+                while self._recovering:  # Left declared, they would keep the process alive.
+                    self._recovering.pop().undeclare()  # type: ignore[no-untyped-call]
                 self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str, delivery: Delivery) -> Publisher:
@@ -208,6 +217,34 @@ class Session:
                 express=delivery is Delivery.URGENT,
             )
         )
+
+    def keeping_publisher(self, key: str, depth: int) -> Publisher:
+        """A publisher that keeps the newest for a `recovering_inbox`; they talk under keys of `RECOVERY`."""
+        ext = self._zenoh.ext
+        return Publisher(
+            ext.declare_advanced_publisher(
+                self._session,
+                key,
+                congestion_control=self._zenoh.CongestionControl.BLOCK,
+                cache=ext.CacheConfig(max_samples=depth),
+                sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT_S),
+                publisher_detection=True,
+            )
+        )
+
+    def recovering_inbox(self, key: str, depth: int) -> Inbox:
+        """As `inbox_of_others`, and asks a `keeping_publisher` for what it missed, in that one's order."""
+        ext = self._zenoh.ext
+        subscriber = ext.declare_advanced_subscriber(
+            self._session,
+            key,
+            self._zenoh.handlers.RingChannel(depth),
+            allowed_origin=self._zenoh.Locality.REMOTE,
+            history=ext.HistoryConfig(detect_late_publishers=True),
+            recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+        )
+        self._recovering.append(subscriber)
+        return Inbox(subscriber)
 
     def inbox(self, key: str, delivery: Delivery, *, keep_all: bool = False) -> Inbox:
         """Subscribe to a key expression.

@@ -20,17 +20,21 @@ def can_make_namespaces() -> bool:
 class Star:
     """A hub's namespace, and a namespace for each board; link 0 leads from the hub to this machine itself.
 
-    `tag` keeps the names apart from those of another test.
+    `tag` keeps the names apart from those of another test. There is one link 0 at a time: a test that needs
+    none is `closed`.
     """
 
-    def __init__(self, tag: str, boards: int, stack: ExitStack) -> None:
+    def __init__(self, tag: str, boards: int, stack: ExitStack, *, closed: bool = False) -> None:
         self.hub = f"{tag}-hub"
         self.boards = [f"{tag}-board{number}" for number in range(1, boards + 1)]
         for name in (self.hub, *self.boards):
             _ip("netns", "add", name)
             stack.callback(_ip, "netns", "del", name)
             _ip("-n", name, "link", "set", "lo", "up")
-        self._links = [self._link(number, name, stack) for number, name in enumerate(("", *self.boards))]
+        ends = dict(enumerate(("", *self.boards)))
+        self._links = {
+            number: self._link(number, end, stack) for number, end in ends.items() if end or not closed
+        }
 
     def hub_address(self, link: int) -> str:
         """The hub's address as it is reached over a link."""

@@ -66,6 +66,11 @@ class WatchedServer:
         while text not in self.shown:
             assert self._read(), f"{text!r} did not come; this did: {self.shown[-2000:]}"
 
+    def wait_for_more(self, text: str) -> None:
+        """Read the terminal until a text has come once more."""
+        self.shown = ""
+        self.wait_for(text)
+
     def wait_until_under_way(self) -> None:
         """Until the progress bar shows learning, and with it that the log was flushed."""
         self.wait_for(" h, path:")

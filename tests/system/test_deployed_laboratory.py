@@ -18,7 +18,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.board_network import NetworkBoard, board_network, can_have_boards
+from tests.support.board_network import OPERATOR, NetworkBoard, board_network, can_have_boards
 from tests.support.laboratory import SMALL_AND_QUICK
 from tests.support.swarm_runs import ROOT
 from tests.support.waiting import until
@@ -29,9 +29,8 @@ pytestmark = [
 ]
 
 MOVES = 300
-ROBOTS = ("r1", "r2", "r3")
-ADDRESS = "127.0.0.1:1000"
-"""Of every robot, on its own board: a board's loopback is its own."""
+ROBOTS = {f"r{number}": f"{OPERATOR}:{1000 + number}" for number in (1, 2, 3)}
+"""Each with the address at which its board reaches it."""
 
 
 class DeployedLaboratory:
@@ -49,7 +48,7 @@ class DeployedLaboratory:
         laboratory = '[laboratory]\nname = "arena"\n[policies]\nservices = "supervised"\n'
         laboratory += f'known_hosts = "known_hosts"\n[server]\n{_machine(self.server)}'
         for number, (robot, board) in enumerate(zip(ROBOTS, self.robots, strict=True)):
-            table = f'[[robot]]\nid = "{robot}"\ndriver = "wifi"\naddress = "{ADDRESS}"\n'
+            table = f'[[robot]]\nid = "{robot}"\ndriver = "wifi"\naddress = "{ROBOTS[robot]}"\n'
             table += f"south_west_m = [{0.2 + 0.5 * number}, 0.2]\n"
             experiment += table
             laboratory += table + _machine(board) + (of_r3 if robot == "r3" else "")
@@ -73,14 +72,14 @@ class DeployedLaboratory:
         return machines
 
     def emulate(self) -> None:
-        """A robot for each board, on that board."""
-        for robot, board in zip(ROBOTS, self.robots, strict=True):
-            words = [sys.executable, "-m", "robot_agent", "emulate-robots", "--address", f"{robot}={ADDRESS}"]
-            words += ["--connect", f"tls/{self.server.host}:7447"]
-            words += ["--credentials", str(self.directory / "keys" / f"robot-{robot}")]
-            words += [str(self.directory / "experiment.toml")]
-            process = self._stack.enter_context(subprocess.Popen(board.inside(*words), cwd=ROOT))
-            self._stack.callback(process.kill)
+        """All robots, on the operator's machine: who plays bodies does so with the tracker's credentials."""
+        words = [sys.executable, "-m", "robot_agent", "emulate-robots"]
+        words += [f"--address={robot}={address}" for robot, address in ROBOTS.items()]
+        words += ["--connect", f"tls/{self.server.host}:7447"]
+        words += ["--credentials", str(self.directory / "keys" / "tracker")]
+        words += [str(self.directory / "experiment.toml")]
+        process = self._stack.enter_context(subprocess.Popen(words, cwd=ROOT))
+        self._stack.callback(process.kill)
 
     def state(self, board: NetworkBoard, service: str) -> str:
         """Of a service on a board."""
@@ -131,16 +130,16 @@ def test_from_nothing_to_a_run_that_is_over(laboratory: DeployedLaboratory) -> N
 
     (laboratory.directory / "no-camera.toml").write_text("what = 1\n")
     laboratory.write(MOVES + 1, of_r3='calibration = "no-camera.toml"\n')
-    second = laboratory.deploy("--interrupt")
+    second = laboratory.deploy()
     assert [machine["state"] for machine in second] == ["deployed"] * 3 + ["failed"], second
     assert second[3]["reason"].endswith("the release before runs again")
     assert laboratory.state(laboratory.robots[2], "swarm-agent@r3") == "active"
 
     laboratory.write(MOVES)
-    third = laboratory.deploy("--interrupt")
+    third = laboratory.deploy("--run")
     assert [machine["state"] for machine in third] == ["deployed"] * 3 + ["unchanged"], third
     assert [machine["copied"] for machine in third] == [[]] * 4
-    assert laboratory.deploy()[0]["state"] == "unchanged"
+    assert laboratory.deploy("--run")[0]["state"] == "unchanged"
     laboratory.emulate()
     reached = laboratory.swarm("lab", "check", *files, "--reach")["findings"]
     assert not [found for found in reached if found["level"] == "bad"]

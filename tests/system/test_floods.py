@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
-from itertools import count
+from contextlib import ExitStack, suppress
+from itertools import count, pairwise
 from pathlib import Path
 
 import pytest
@@ -21,14 +21,16 @@ from swarm.runtime.identity import RunIdentity
 from swarm.runtime.liveliness import Presence
 from tests.support.certified import CertifiedLaboratory
 from tests.support.laboratory import Laboratory
+from tests.support.waiting import until
 
 pytestmark = pytest.mark.faults
 
 COMMANDS = 60
 """Of the honest robot, during each attack: six seconds at 10 Hz."""
-RATE_HZ = 10.0
+STANDS_AFTER = 10
+"""Messages in a row: a robot stands when it has heard nothing for a second."""
 LARGEST_GROWTH_BYTES = 128 << 20
-"""What waits under the mad robot's keys, and what Zenoh receives into; nothing else may grow."""
+"""8 MiB may wait under each of the mad robot's keys, and as much again is being taken in."""
 MAD_EPOCH = 77
 AT_ONCE = 200
 
@@ -83,6 +85,7 @@ def test_a_mad_robot_costs_nobody_else_anything(tmp_path: Path, stack: ExitStack
     watching = stack.enter_context(_connected(certified, "viewer"))
     stuck = stack.enter_context(certified.client("viewer"))
     unread = stuck.declare_subscriber("robot/*/move", zenoh.handlers.FifoChannel(1))
+    stack.callback(unread.undeclare)
     heard = watching.declare_subscriber("robot/r1/command", zenoh.handlers.FifoChannel(10_000))
     identity = RunIdentity.of(Experiment.load(laboratory.file), 0)
     presence = Presence("robot", "r0", "mad", MAD_EPOCH, str(identity.fingerprint))
@@ -90,8 +93,8 @@ def test_a_mad_robot_costs_nobody_else_anything(tmp_path: Path, stack: ExitStack
     heard.recv()
     before = _resident_bytes(server.pid)
     for name, attack in madness.attacks.items():
-        rate_hz = _rate_during(attack, heard)
-        assert rate_hz > 0.9 * RATE_HZ, f"{name}: {rate_hz:.1f} Hz"
+        gap = _longest_gap_during(attack, heard)
+        assert gap < STANDS_AFTER / 2, f"{name}: {gap} commands in a row were not heard"
         grown = _resident_bytes(server.pid) - before
         assert grown < LARGEST_GROWTH_BYTES, f"{name}: {grown >> 20} MiB"
     server.terminate()
@@ -116,20 +119,31 @@ def _told(log: Path) -> set[str]:
 
 def _connected(certified: CertifiedLaboratory, identity: str) -> zenoh.Session:
     """Once the server is there."""
-    while True:
-        try:
-            return certified.client(identity)
-        except zenoh.ZError:
-            time.sleep(0.1)
+    opened: list[zenoh.Session] = []
+
+    def connects() -> bool:
+        with suppress(zenoh.ZError):
+            opened.append(certified.client(identity))
+        return bool(opened)
+
+    until(connects)
+    return opened[0]
 
 
-def _rate_during(attack: Callable[[], None], heard: zenoh.Subscriber[zenoh.Handler[zenoh.Sample]]) -> float:
-    """At what rate the honest robot is heard while somebody attacks."""
+def _longest_gap_during(
+    attack: Callable[[], None], heard: zenoh.Subscriber[zenoh.Handler[zenoh.Sample]]
+) -> int:
+    """How many of the honest robot's messages in a row are not heard while somebody attacks.
+
+    By its own numbers and not by a clock: the attacker takes a core of the machine that all of them run on.
+    """
     while heard.try_recv() is not None:
         pass
-    began_s, number = time.monotonic(), 0
-    while number < COMMANDS:
+    numbers: list[int] = []
+    while len(numbers) < COMMANDS:
         attack()
-        while heard.try_recv() is not None:
-            number += 1
-    return number / (time.monotonic() - began_s)
+        while (sample := heard.try_recv()) is not None:
+            header = Header.unpack(bytes(sample.attachment or b""))
+            assert header is not None
+            numbers.append(header.sequence)
+    return max(later - earlier - 1 for earlier, later in pairwise(numbers))

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import os
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -12,16 +11,19 @@ from pathlib import Path
 
 import pytest
 
+from swarm import open_run
 from swarm.checkup.machine import RESERVE_BYTES
+from swarm.logs.check import check_run
 from tests.conftest import SmallRun
 from tests.support.laboratory import Laboratory
-from tests.support.swarm_runs import ROOT, experiment_text, messages, server_command, write_experiment
-from tests.system.test_signals import is_under_way, left_behind
+from tests.support.swarm_runs import ROOT, experiment_text, messages, write_experiment
+from tests.support.watched_server import WatchedServer
+from tests.system.test_signals import left_behind
 
 pytestmark = pytest.mark.faults
 
-DISK_BYTES = RESERVE_BYTES + (4 << 20)
-"""Four megabytes more than a run must find to begin."""
+DISK_BYTES = RESERVE_BYTES + (40 << 20)
+"""Some megabytes more than a run must find to begin, and to go on."""
 
 
 @pytest.fixture
@@ -56,20 +58,30 @@ def one_line(said: str) -> str:
     return line
 
 
-def test_a_simulation_ends_in_order(disk: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("options", [(), ("--speed", "20")], ids=["lockstep", "live"])
+def test_a_run_pauses_and_goes_on_once_there_is_room(
+    disk: Path, tmp_path: Path, options: tuple[str, ...]
+) -> None:
     experiment = write_experiment(tmp_path, experiment_text(moves=1_000_000))
     run = disk / "run"
-    server = subprocess.Popen(server_command(experiment, run), cwd=ROOT, stderr=subprocess.PIPE, text=True)
-    while not is_under_way(run / "trial-000.mcap"):
-        os.sched_yield()
-    fill(disk)
-    said = server.communicate()[1]
-    assert server.returncode == 1
-    assert "failed: " in said.splitlines()[-1]
-    assert "Traceback" not in said
-    states = {trial["state"] for trial in json.loads((run / "manifest.json").read_text())["trials"]}
-    assert states == {"interrupted"}
+    with WatchedServer(experiment, run, options) as server:
+        server.wait_until_under_way()
+        fill(disk)
+        server.wait_for("paused: ")
+        (disk / "filling").unlink()
+        server.wait_for("goes on: the disk has room again")
+        server.wait_for_more(" h, path:")
+        server.process.send_signal(signal.SIGINT)
+        assert server.finish() == 130
+        assert "Traceback" not in server.shown
     assert not left_behind(str(experiment))
+    (found,) = check_run(run)
+    assert found.faults == ["the trial was interrupted: the server was ended by SIGINT"]
+    moves = open_run(run).table("moves").collect()
+    for _, numbers in moves.group_by("robot").agg("number").iter_rows():
+        assert sorted(numbers) == list(range(1, len(numbers) + 1))
+    last = sorted(run.glob("trial-000-*.mcap"))[-1]
+    assert next(messages(last, "move"), None), "it has gone on"
 
 
 def test_nothing_half_written_is_left_of_what_a_log_gives(disk: Path, small_run: SmallRun) -> None:

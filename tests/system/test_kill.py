@@ -12,6 +12,7 @@ import pytest
 
 from swarm.logs.check import check_log
 from swarm.logs.reader import LogReader, Part
+from swarm.logs.trial_logs import logs_in
 from swarm.messages import topics
 from swarm.runtime.lockstep import WAKE_S, WAKES_WITHOUT_HUB
 from tests.support.swarm_runs import experiment_text, run_server, write_experiment
@@ -32,7 +33,8 @@ def server(tmp_path: Path) -> Iterator[WatchedServer]:
 
 def messages_in(server: WatchedServer) -> LogReader:
     """The log, read to its end."""
-    reader = LogReader(server.out / "trial-000.mcap")
+    (log,) = logs_in(server.out, [])
+    reader = LogReader(log.path)
     for _ in reader.parts():
         pass
     return reader

@@ -173,7 +173,7 @@ def test_told_twice_it_still_ends_in_order(tmp_path: Path) -> None:
     server = subprocess.Popen(
         server_command(experiment, tmp_path / "run"), cwd=ROOT, stderr=subprocess.PIPE, text=True
     )
-    log = tmp_path / "run" / "trial-000.mcap"
+    log = tmp_path / "run" / "trial-000.mcap.part"
     while not log.exists():
         os.sched_yield()
     server.send_signal(signal.SIGINT)
@@ -194,7 +194,7 @@ def test_a_killed_server_takes_its_processes_with_it(
     server = subprocess.Popen(
         server_command(experiment, tmp_path / "run", *options), cwd=ROOT, stderr=subprocess.DEVNULL
     )
-    log = tmp_path / "run" / "trial-000.mcap"
+    log = tmp_path / "run" / "trial-000.mcap.part"
     while not is_under_way(log):
         os.sched_yield()
     handles = {pid: os.pidfd_open(pid) for pid in children(server.pid)}

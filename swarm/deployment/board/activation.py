@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -107,6 +108,9 @@ def _prune(board: Board, keep: int) -> None:
     records = [json.loads((board.programs / name / COMPLETE).read_text()) for name in programs]
     needed = {wheel.partition("/")[0] for record in records for wheel in record["wheels"]}
     _remove_others(board.wheels, needed)
+    for program in board.root.glob("board-*.pyz"):
+        if program.name != Path(sys.argv[0]).name:
+            program.unlink()
 
 
 def _remove_others(folder: Path, kept: set[str]) -> None:

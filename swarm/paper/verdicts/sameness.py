@@ -34,10 +34,9 @@ def no_difference(check: NoDifference, evidence: Evidence) -> Finding:
 
 
 def _same_ruling(differs: bool, same: bool, enough_runs: bool) -> Ruling:
-    if same and differs:
-        return Verdict.IN_PART, "the same but for a difference that is significant, and negligible"
+    """A difference that is significant and negligible is none: more runs would find one anywhere."""
     if same:
-        return Verdict.HOLDS, "no difference is found, and none greater than the margin is possible"
+        return Verdict.HOLDS, "a significant difference, but a negligible one" if differs else "none is found"
     if differs:
         return Verdict.DOES_NOT_HOLD, "the means differ significantly"
     verdict = Verdict.DOES_NOT_HOLD if enough_runs else Verdict.UNDECIDED

@@ -49,6 +49,7 @@ def test_payload_numbers_and_times_are_those_of_the_wire(tmp_path: Path) -> None
         reader = make_reader(file)
         found = list(reader.iter_messages())
         about = {record.name: record.metadata for record in reader.iter_metadata()}
+    assert about.pop("chain")["chunks"] == "1"
     assert about == ABOUT
     (_, channel, pose), (_, _, move) = sorted(found, key=lambda each: each[1].topic, reverse=True)
     assert channel.metadata == {"epoch": "1", "robot": "a", "delivery": "newest"}
@@ -89,7 +90,7 @@ def test_what_the_key_table_does_not_know_is_counted(tmp_path: Path) -> None:
     secrets = [Item("robot/a/secret", Header(1, n, 0), b"") for n in (1, 2)]
     recorder.write(Batch(1000, [*secrets, pose_item(1)]))
     recorder.close()
-    assert recorder.unknown_keys == {"robot/a/secret": 2}
+    assert recorder.left_out.unknown_keys == {"robot/a/secret": 2}
     assert read(recorder.path).messages == recorder.messages == 1
 
 
@@ -101,8 +102,8 @@ def test_made_up_senders_end_no_recorder(tmp_path: Path) -> None:
         recorder.write(Batch(1000 * epoch, items))
     recorder.write_view("view/x", pb.Event(level=pb.Event.INFO), 65_537_000)
     recorder.close()
-    assert sum(recorder.restarted_too_often.values()) == 2 * 65_536 - MOST_CHANNELS
-    assert recorder.restarted_too_often["robot/a/pose"] == 65_536 - MOST_EPOCHS
+    assert sum(recorder.left_out.restarted_too_often.values()) == 2 * 65_536 - MOST_CHANNELS
+    assert recorder.left_out.restarted_too_often["robot/a/pose"] == 65_536 - MOST_EPOCHS
     assert read(recorder.path).damage == []
 
 
@@ -196,7 +197,7 @@ def test_what_is_too_large_is_refused_counted_and_costs_nothing_else(tmp_path: P
     recorder.end("complete", "", None)
     recorder.close()
     assert ending_of(read(recorder.path).metadata).sent["robot/a/event", 1] == 2, "it is missing"
-    assert recorder.oversized == {"robot/a/event": 1}
+    assert recorder.left_out.oversized == {"robot/a/event": 1}
     assert read(recorder.path).messages == recorder.messages == 2
 
 

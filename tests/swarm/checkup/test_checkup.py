@@ -64,11 +64,13 @@ def test_the_demo_can_start_on_this_machine(tmp_path: Path) -> None:
         ("keep_off_m = 0.02", "", "needs proximity sensors, which a simulated robot has not"),
         ('skirt = "banana"', "", "unknown colour 'banana'; known: black, blue, "),
         ("", '[tracker]\nbackend = "simm"', "there is no tracking system 'simm'; did you mean 'sim'?"),
+        ("", '[tracker]\nfile = "nope.csv"', "nope.csv: there is no such file"),
+        ("", '[tracker]\naxes = "x y q"', "'x y q' does not name three axes"),
         ("", '[camera]\nconditions = "sunny"', "unknown camera conditions 'sunny'; known: clean, dark"),
         ("", '[camera]\ncalibration = "nope.toml"', "nope.toml: there is no such file"),
         ("", '[camera]\ncolours = "nope.npz"', "colour table nope.npz cannot be used"),
     ],
-    ids=["driver", "reflex", "skirt", "tracker", "conditions", "calibration", "colours"],
+    ids=["driver", "reflex", "skirt", "tracker", "file", "axes", "conditions", "calibration", "colours"],
 )
 def test_names_and_files_are_looked_up_whoever_watches(
     tmp_path: Path, watches: str, of_a: str, tables: str, said: str

@@ -138,28 +138,42 @@ def states(machines: list[dict[str, Any]]) -> list[str]:
     return [machine["state"] for machine in machines]
 
 
-def test_a_laboratory_from_nothing_to_its_second_version_and_back(laboratory: Laboratory) -> None:
+def first_deployment(laboratory: Laboratory) -> list[dict[str, Any]]:
+    """Version 1.0 on every board, and a run that has begun."""
     small_program(laboratory.wheelhouse, "1.0")
-    experiment = str(laboratory.experiment)
-    assert states(laboratory.deploy(experiment, "--dry-run")) == ["would change"] * 3
-    assert not list(laboratory.directory.glob("board-*/current")), "a dry run changes nothing"
+    machines = laboratory.deploy(str(laboratory.experiment), "--run")
+    assert states(machines) == ["deployed"] * 3, [machine["reason"] for machine in machines]
+    return machines
 
-    first = laboratory.deploy(experiment)
-    assert states(first) == ["deployed"] * 3, [machine["reason"] for machine in first]
+
+def test_from_nothing_to_services_that_run(laboratory: Laboratory) -> None:
+    first = first_deployment(laboratory)
     assert [machine["services"] for machine in first] == [
         {"swarm-server.service": "active", "swarm-bridge.service": "active"},
         {"swarm-agent@r2.service": "active"},
         {"swarm-agent@r3.service": "active"},
     ]
-    running = laboratory.running()
-    assert states(laboratory.deploy(experiment)) == states(laboratory.deploy()) == ["unchanged"] * 3
+    running, again = laboratory.running(), laboratory.deploy(str(laboratory.experiment), "--run")
+    assert states(again) == states(laboratory.deploy()) == ["unchanged"] * 3
     assert laboratory.running() == running, "nobody was started anew"
 
+    laboratory.write("1.0", of_r3='address = "elsewhere"\n')
+    for change in ((), ("--rollback",)):
+        with pytest.raises(UserError, match=r"a run is under way \(tracker, server on 127\.0\.0\.1\)"):
+            laboratory.deploy(*change)
+    assert laboratory.running() == running, "a run that is under way is not ended without being asked to"
+
+    commands = laboratory.boards.commands
+    assert {command.split(" ", 1)[0] for command in commands} == {sys.executable}
+    assert all(re.fullmatch(r"[\w./-]+ [\w./-]+\.pyz", command) for command in commands), "no name of ours"
+    assert not _secrets_in_the_open(laboratory.directory)
+
+
+@pytest.mark.faults
+def test_a_version_that_does_not_start_on_one_board(laboratory: Laboratory) -> None:
+    first = first_deployment(laboratory)
     small_program(laboratory.wheelhouse, "2.0")
     laboratory.write("2.0", of_r3='address = "broken"\n')
-    with pytest.raises(UserError, match=r"a run is under way \(tracker, server on 127\.0\.0\.1\)"):
-        laboratory.deploy()
-    assert laboratory.running() == running, "a run that is under way is not ended without being asked to"
     second = laboratory.deploy("--interrupt")
     assert states(second) == ["deployed", "deployed", "failed"]
     assert "swarm-agent@r3.service is restarting (error: this robot is broken)" in second[2]["reason"]
@@ -178,16 +192,11 @@ def test_a_laboratory_from_nothing_to_its_second_version_and_back(laboratory: La
     assert [machine["copied"] for machine in third] == [[], [], []], "the wheels were there"
     assert third[1]["changes"] == ["agent-r2.env", "camera-r2.toml"]
     assert third[2]["changes"] == ["program"]
-
     assert not laboratory.bad_on_reach()
 
-    back = laboratory.deploy("--rollback")
+    back = laboratory.deploy("--rollback", "--interrupt")
     assert states(back) == ["rolled back"] * 3
     assert laboratory.releases() == [first[0]["release"], second[1]["release"], first[2]["release"]]
-    asked = {command.split(" ", 1)[0] for command in laboratory.boards.commands}
-    assert asked == {sys.executable}
-    assert all(re.fullmatch(r"[\w./-]+ [\w./-]+\.pyz", command) for command in laboratory.boards.commands)
-    assert not _secrets_in_the_open(laboratory.directory)
 
 
 def _secrets_in_the_open(directory: Path) -> list[Path]:
@@ -224,6 +233,12 @@ def test_machines_that_cannot_be_used_are_told_with_the_reason(laboratory: Labor
     assert states(outcomes) == ["would change", "failed", "failed"]
     assert "/nowhere/python3" in outcomes[1]["reason"]
     assert outcomes[2]["reason"].startswith("it cannot be reached (")
+
+
+def test_a_dry_run_changes_nothing(laboratory: Laboratory) -> None:
+    small_program(laboratory.wheelhouse, "1.0")
+    assert states(laboratory.deploy("--dry-run")) == ["would change"] * 3
+    assert not list(laboratory.directory.glob("board-*/current"))
 
 
 def test_nobody_goes_back_to_nothing(laboratory: Laboratory) -> None:

@@ -151,7 +151,7 @@ def rewritten(log: Path, change: Callable[[list[Message]], None], head: int = 1)
         reader = make_reader(file)
         summary = reader.get_summary()
         assert summary is not None
-        about = list(reader.iter_metadata())
+        about = [record for record in reader.iter_metadata() if record.name != "chain"]
         messages = [message for _, _, message in reader.iter_messages(log_time_order=False)]
     change(messages)
     path = log.with_name("rewritten.mcap")

@@ -33,7 +33,9 @@ def test_a_sound_log_is_copied_whole(log: Path, tmp_path: Path) -> None:
     assert (recovery.messages, recovery.lost) == (40, [])
     assert check_log(tmp_path / "new.mcap").sound
     assert numbers(tmp_path / "new.mcap") == numbers(log) == list(range(1, 41))
-    assert LogReader(tmp_path / "new.mcap").read_metadata() == LogReader(log).read_metadata()
+    copied, original = (LogReader(path).read_metadata() for path in (tmp_path / "new.mcap", log))
+    assert copied.pop("chain") != original.pop("chain"), "it has other chunks"
+    assert copied == original
 
 
 def test_a_cut_log_is_recovered_up_to_the_cut(log: Path, tmp_path: Path) -> None:
