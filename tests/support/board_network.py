@@ -62,6 +62,7 @@ def _board(directory: Path, number: int, stack: ExitStack) -> NetworkBoard:
     stack.callback(_ip, "netns", "del", board.namespace)
     here, there = f"swarm-board{number}", "eth0"
     _ip("link", "add", here, "type", "veth", "peer", "name", there, "netns", board.namespace)
+    stack.callback(_ip, "link", "del", here)  # a process that is left holds the namespace, and so both ends
     _ip("link", "set", here, "master", BRIDGE, "up")
     _ip("-n", board.namespace, "address", "add", f"{board.host}/24", "dev", there)
     for name in ("lo", there):
