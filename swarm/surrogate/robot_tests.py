@@ -125,7 +125,7 @@ def better_start_stays_ahead(evidence: RobotEvidence) -> RobotFinding:
 def good_start_helps_the_other(evidence: RobotEvidence) -> RobotFinding:
     """Robots with a bad start of their own: with a partner that had a good one, against those alone."""
     helped, _, alone = _bad_starts(evidence)
-    if min(len(helped), len(alone)) < 2:
+    if _cannot_be_compared(helped, alone):
         return RobotFinding(Verdict.UNDECIDED, "too few trials", None)
     p = float(stats.ttest_ind(helped, alone, equal_var=False, alternative="less").pvalue)
     why = (
@@ -137,7 +137,7 @@ def good_start_helps_the_other(evidence: RobotEvidence) -> RobotFinding:
 def no_gain_without_a_good_start(evidence: RobotEvidence) -> RobotFinding:
     """The same with a partner whose start was as bad: equivalent to being alone, but for a tenth."""
     _, unhelped, alone = _bad_starts(evidence)
-    if min(len(unhelped), len(alone)) < 2:
+    if _cannot_be_compared(unhelped, alone):
         return RobotFinding(Verdict.UNDECIDED, "too few trials", None)
     margin = SAME * alone.mean()
     tests = (
@@ -249,6 +249,11 @@ def _gain_test(many: ManyTrials) -> tuple[float, float]:
     )
     rng = spawned_generator(many.experiment.run.seed, many.experiment.run.name, 0, "claims", "sign flips")
     return max_t_test(alone, imitating, rng).smallest_p, float(_gains(many).mean())
+
+
+def _cannot_be_compared(one: FloatArray, other: FloatArray) -> bool:
+    """Too few, or nobody came to good paths at all."""
+    return min(len(one), len(other)) < 2 or np.ptp(one) == 0 or np.ptp(other) == 0
 
 
 def _bad_starts(evidence: RobotEvidence) -> tuple[FloatArray, FloatArray, FloatArray]:
