@@ -14,7 +14,7 @@ from swarm.access.zenoh_limits import FASTER
 from swarm.messages import swarm_pb2 as pb
 from swarm.messages.header import Item
 from swarm.messages.topics import Topic
-from swarm.runtime.zenoh_session import Session, WireSample
+from swarm.runtime.zenoh_session import MOST_AT_ONCE, Session, WireSample
 
 UNRATED_PER_S = 20.0
 """Of what comes as it happens: a robot makes a move or two a second."""
@@ -32,7 +32,7 @@ class LimitedInbox:
     def __init__(self, session: Session, topic: Topic[Any], robot: str, speed: float, tell: Tell) -> None:
         self.key = topic.key(robot)
         listen = session.recovering_inbox if topic.is_recovered else session.inbox_of_others
-        self._most = topic.most_waiting
+        self._most = min(MOST_AT_ONCE, topic.most_waiting)
         self._inbox = listen(self.key, self._most)
         self._at_once = min(AT_ONCE, self._most)
         self._per_s = (FASTER * topic.rate_hz if topic.rate_hz else UNRATED_PER_S) * speed

@@ -135,6 +135,8 @@ MEANINGS = {
     "failed_exchanges": "exchanges with the robot without a good answer so far",
     "refused_readings": "step counters that the wheels cannot have made",
     "refused_commands": "commands that came after their deadline",
+    "paused": "whether a person ordered the robot to pause",
+    "estopped": "whether an emergency stop is latched in the robot",
     "readable": "whether the messages' type is known here",
 }
 """Of a column of this name in any table."""

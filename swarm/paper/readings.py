@@ -74,13 +74,13 @@ OPTIONS = (
             "0.4": _epsilon(OBSTACLE_100.name, 0.4),
             "0.6": _epsilon(OBSTACLE_100.name, 0.6),
         },
-        "The times of the text are those of 0.5: 0.4 makes all earlier, 0.6 all later.",
+        "The times of figures 12, 15 and 16 are those of 0.5.",
     ),
     Option(
         "epsilon-10",
         '2.1: "with a probability of ε, it chooses a random action" (no number; 10 x 10 arena)',
         {"0.3": _same, "0.1": _epsilon(OPEN_10.name, 0.1), "0.5": _epsilon(OPEN_10.name, 0.5)},
-        "Figures 3 to 9 tell hardly between them; 0.3 lies in the middle.",
+        "Figures 3 to 9 hardly tell between them: 0.5 gives the same verdicts.",
     ),
     Option(
         "q-increase",
@@ -91,14 +91,14 @@ OPTIONS = (
             "change-stored": _increase(QIncrease.STORED),
             "average-as-printed": _increase(QIncrease.AVERAGE),
         },
-        "With the change that the rule asks for R reaches figure 14's size; computed as printed, most of the "
-        "changes are lost in the rounding of an average of 80,000 values.",
+        "With the change that the rule asks for, R of SE ends at 0.7, as in figure 14; with those of the "
+        "stored values, at 0.08.",
     ),
     Option(
         "precision",
         "(not said: the arithmetic of the stored Q values)",
         {"double": _same, "single": lambda condition: replace(condition, precision=Precision.SINGLE)},
-        "What most programs use; with single precision figure 17's late window never comes.",
+        "What most programs use.",
     ),
     Option(
         "last-action",

@@ -52,7 +52,7 @@ def test_the_curve_is_the_mean_over_trials_with_an_interval_on_the_scale(tmp_pat
     assert curve["mean"][0] == 87
     assert high > 100 > curve["high"][0] > 87
     assert low > curve["low"][0] > 9, "on the logit's axis the side away from the end of the scale is longer"
-    assert curve["low"][2] == curve["high"][2] == 9
+    assert curve["low"][2] == 9 < curve["high"][2] < 100, "a trial may learn at half of the slowest's pace"
 
 
 def test_too_few_trials_are_shown_one_by_one(run: Path) -> None:
@@ -61,7 +61,7 @@ def test_too_few_trials_are_shown_one_by_one(run: Path) -> None:
     assert analysis.as_json()["conditions"]["no-imitation"]["final_of_each_trial"] == [60, 50, 40]
     report = analysis.files["report.md"].read_text()
     assert "none; trials: 40.0, 50.0, 60.0" in report
-    assert "of fewer than 5 no interval can be given" in report
+    assert "of fewer than 4 no interval can be given" in report
 
 
 def test_everything_that_is_promised_is_written(run: Path) -> None:

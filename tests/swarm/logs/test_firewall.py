@@ -64,7 +64,7 @@ def test_a_robot_that_is_sent_another_s_moves_is_named_with_their_bytes(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Somebody passes on everything that r0 says of its moves, as orders to r1, in r0's name."""
+    """Somebody passes on everything that r0 says of its moves, as poses to r1, in r0's name."""
     laboratory = Laboratory(tmp_path, stack, count=2)
     server = laboratory.serve()
     session = stack.enter_context(Session(SessionSettings(laboratory.endpoint)))
@@ -73,7 +73,7 @@ def test_a_robot_that_is_sent_another_s_moves_is_named_with_their_bytes(
     laboratory.track()
     agents = [laboratory.agent("r0"), laboratory.agent("r1")]
     overheard = session.inbox(topics.MOVE.key("r0"), Delivery.EVERY)
-    to_r1 = session.publisher(topics.ORDER.key("r1"), Delivery.EVERY)
+    to_r1 = session.publisher(topics.POSE.key("r1"), Delivery.EVERY)
     sent_bytes = 0
     while moves(operator.sees()) < 6 or not sent_bytes:
         for sample in overheard.poll():
@@ -85,13 +85,14 @@ def test_a_robot_that_is_sent_another_s_moves_is_named_with_their_bytes(
     run = tmp_path / "run"
     found = audited(run)
     ((crossing),) = found.violations
-    assert (crossing.source, crossing.robot, crossing.key) == ("r0", "r1", "robot/r1/order")
-    assert crossing.bytes == sent_bytes == found.pairs()["r0", "r1"]["other"]
+    assert (crossing.source, crossing.robot, crossing.key) == ("r0", "r1", "robot/r1/pose")
+    assert 0 < crossing.bytes <= sent_bytes, "the hub drops poses that come all at once"
+    assert found.pairs()["r0", "r1"]["other"] == crossing.bytes
     assert "refused" in json.dumps(found.as_json())
     monkeypatch.setattr("sys.argv", ["swarm", "check", "--firewall", str(run)])
     with pytest.raises(SystemExit, match="1"):
         main()
-    assert f"r1 received {sent_bytes:,} bytes" in capsys.readouterr().err
+    assert str(crossing) in capsys.readouterr().err
 
 
 def test_a_robot_that_gave_no_account_proves_nothing(small_run: SmallRun, tmp_path: Path) -> None:
