@@ -24,7 +24,7 @@ from swarm.surrogate.enactment import (
 from swarm.surrogate.trials import THRESHOLD, ManyTrials
 
 START_MOVES = 1500
-"""A start is good if the best path arrives by then: about a fifth of lone robots."""
+"""A start is good if a best path has been learnt by then that arrives."""
 SAME = 0.1
 """"No gain" is one of less than a tenth of the time that a robot alone takes."""
 
@@ -50,11 +50,15 @@ class RobotFinding:
     p: float | None
 
 
-def learner_curves(many: ManyTrials, group: str, place: int = 0) -> Curves:
-    """The curves of one learner of a condition: two that copy each other are not a loner's equal."""
+def learner_curves(many: ManyTrials, group: str, place: int = 0, *, learnt: bool = False) -> Curves:
+    """The curves of one learner of a condition: two that copy each other are not a loner's equal.
+
+    `learnt`: without the paths that arrive by luck.
+    """
     name = [robot.id for robot in many.experiment.learners if robot.group == group][place]
     curves = many.curves[group]
-    rows = [outcome.best_paths[name][: len(curves.times)] for outcome in many.outcomes]
+    kinds = [outcome.learnt_paths if learnt else outcome.best_paths for outcome in many.outcomes]
+    rows = [paths[name][: len(curves.times)] for paths in kinds]
     return replace(curves, name=name, values=np.array(rows, dtype=np.float64))
 
 
@@ -121,7 +125,7 @@ def better_start_stays_ahead(evidence: RobotEvidence) -> RobotFinding:
 def good_start_helps_the_other(evidence: RobotEvidence) -> RobotFinding:
     """Robots with a bad start of their own: with a partner that had a good one, against those alone."""
     helped, _, alone = _bad_starts(evidence)
-    if min(len(helped), len(alone)) < 2:
+    if _cannot_be_compared(helped, alone):
         return RobotFinding(Verdict.UNDECIDED, "too few trials", None)
     p = float(stats.ttest_ind(helped, alone, equal_var=False, alternative="less").pvalue)
     why = (
@@ -133,7 +137,7 @@ def good_start_helps_the_other(evidence: RobotEvidence) -> RobotFinding:
 def no_gain_without_a_good_start(evidence: RobotEvidence) -> RobotFinding:
     """The same with a partner whose start was as bad: equivalent to being alone, but for a tenth."""
     _, unhelped, alone = _bad_starts(evidence)
-    if min(len(unhelped), len(alone)) < 2:
+    if _cannot_be_compared(unhelped, alone):
         return RobotFinding(Verdict.UNDECIDED, "too few trials", None)
     margin = SAME * alone.mean()
     tests = (
@@ -247,22 +251,29 @@ def _gain_test(many: ManyTrials) -> tuple[float, float]:
     return max_t_test(alone, imitating, rng).smallest_p, float(_gains(many).mean())
 
 
+def _cannot_be_compared(one: FloatArray, other: FloatArray) -> bool:
+    """Too few, or nobody came to good paths at all."""
+    return min(len(one), len(other)) < 2 or np.ptp(one) == 0 or np.ptp(other) == 0
+
+
 def _bad_starts(evidence: RobotEvidence) -> tuple[FloatArray, FloatArray, FloatArray]:
     """When robots with a bad start come to good paths: partner's start good, partner's bad, and alone."""
-    pair = _pair(evidence)
-    good = [_arrived(curves) for curves in pair]
-    helped, unhelped = [], []
+    pair, (imitating, _) = _pair(evidence), groups(evidence.each_other)
+    good = [_arrived(learner_curves(evidence.each_other, imitating, place, learnt=True)) for place in (0, 1)]
+    helped, unhelped, alone = [], [], []
     for curves, own, partners in ((pair[0], good[0], good[1]), (pair[1], good[1], good[0])):
         times = _lasting(curves)
         helped.append(times[~own & partners])
         unhelped.append(times[~own & ~partners])
-    loners = imitators_and_loners(evidence.each_other)[1], imitators_and_loners(evidence.expert)[1]
-    alone = np.concatenate([_lasting(curves)[~_arrived(curves)] for curves in loners])
-    return np.concatenate(helped), np.concatenate(unhelped), alone
+    for many in _both(evidence):
+        _, loners = groups(many)
+        bad = ~_arrived(learner_curves(many, loners, learnt=True))
+        alone.append(_lasting(learner_curves(many, loners))[bad])
+    return np.concatenate(helped), np.concatenate(unhelped), np.concatenate(alone)
 
 
 def _arrived(curves: Curves) -> BoolArray:
-    """Whether each robot's best path has arrived by the end of its start."""
+    """Whether each robot has learnt a path that arrives by the end of its start."""
     assert curves.scale is not None
     arrived: BoolArray = np.asarray(
         (curves.between(0, START_MOVES).values < curves.scale.highest).any(axis=1)

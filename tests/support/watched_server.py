@@ -73,7 +73,7 @@ class WatchedServer:
 
     def wait_until_under_way(self) -> None:
         """Until the progress bar shows learning, and with it that the log was flushed."""
-        self.wait_for(" h, path:")
+        self.wait_for(", path:")
         self._find_children()
 
     def finish(self) -> int:

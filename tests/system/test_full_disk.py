@@ -70,7 +70,7 @@ def test_a_run_pauses_and_goes_on_once_there_is_room(
         server.wait_for("paused: ")
         (disk / "filling").unlink()
         server.wait_for("goes on: the disk has room again")
-        server.wait_for_more(" h, path:")
+        server.wait_for_more(", path:")
         server.process.send_signal(signal.SIGINT)
         assert server.finish() == 130
         assert "Traceback" not in server.shown

@@ -12,6 +12,7 @@ import pytest
 
 from swarm.config.experiment import Experiment
 from swarm.logs.reader import LogReader
+from swarm.logs.trial_logs import open_path
 from swarm.replay.recorded import read_recording
 from tests.support.swarm_runs import ROOT, experiment_text, run_server, server_command, write_experiment
 from tests.system.test_signals import left_behind
@@ -41,7 +42,8 @@ def test_trials_end_with_their_server(tmp_path: Path, told: signal.Signals) -> N
     command = server_command(file, run, "--trials", "3", "--jobs", "2")
     server = subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True)
     logs = [run / "trial-000.mcap", run / "trial-001.mcap"]
-    while server.poll() is None and not all(log.exists() and log.stat().st_size > 8192 for log in logs):
+    written = [open_path(log) for log in logs]
+    while server.poll() is None and not all(log.exists() and log.stat().st_size > 8192 for log in written):
         os.sched_yield()
     server.send_signal(told)
     _, said = server.communicate()
