@@ -95,9 +95,7 @@ def main() -> None:
     """Open the viewer, or write what it would open."""
     parser = argparse.ArgumentParser(description="Shows a log in Rerun.")
     parser.add_argument("log", type=Path, metavar="LOG.mcap")
-    parser.add_argument(
-        "--save", type=Path, metavar="FILE.rrd", help="write a file; no viewer opens"
-    )
+    parser.add_argument("--save", type=Path, metavar="FILE.rrd", help="write a file; no viewer opens")
     asked = parser.parse_args()
     rr.init(f"swarm {asked.log.stem}", spawn=asked.save is None)
     if asked.save:
