@@ -23,7 +23,7 @@ from server.processes.environment import (
 from server.progress import RunProgress, print_summary
 from server.run import Run, Simulation
 from server.run_directory import RunDirectory
-from server.trial import TrialResult
+from server.trial import Onlooker, TrialResult
 from swarm.access.zenoh_limits import hub_limits
 from swarm.checkup.checkup import experiment_findings, findings
 from swarm.checkup.finding import Level, require_good
@@ -33,6 +33,7 @@ from swarm.config import arguments
 from swarm.config.changes import add_set_option
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError
+from swarm.extras import require_extra
 from swarm.parallel import check_scheduler
 from swarm.runtime.process import OneLineParser, add_protection_arguments, session_settings
 from swarm.runtime.zenoh_session import Session
@@ -41,6 +42,10 @@ from swarm.signals import leave_on_signals
 
 RUN_ID_BYTES = 6
 """12 digits: a laboratory's thousand runs share one with a probability of 2 in a billion."""
+
+
+LIVE = "127.0.0.1:8765"
+"""Where Foxglove and Lichtblick look first, on this machine."""
 
 
 def run() -> None:
@@ -52,8 +57,9 @@ def conduct(asked: argparse.Namespace) -> None:
     """Conduct the experiment's trials on simulated robots or, with --listen, on a laboratory's."""
     leave_on_signals()
     plan = _resumed(asked) if asked.resume else _begun(asked)
-    with RunProgress(plan.experiment, Console(stderr=True)) as progress, ExitStack() as open_session:
-        environment = _environment(plan, asked, progress, open_session)
+    with RunProgress(plan.experiment, Console(stderr=True)) as progress, ExitStack() as stack:
+        onlookers = _onlookers(asked, stack)
+        environment = _environment(plan, asked, progress, stack)
         directory = plan.directory or RunDirectory.create(asked.out, plan.experiment.run.name)
         run = Run(
             plan.experiment,
@@ -67,6 +73,7 @@ def conduct(asked: argparse.Namespace) -> None:
             min(asked.jobs, len(plan.trials)),
             asked.scheduler,
             plan.simulation,
+            onlookers,
             dict(plan.results),
         )
         summary = run.run()
@@ -105,6 +112,18 @@ def _environment(
     manager.ready()
     _warn_of_bad(plan.experiment, progress)
     return partial(laboratory, plan.experiment, session, progress.warn, manager.going_on)
+
+
+def _onlookers(asked: argparse.Namespace, stack: ExitStack) -> Sequence[Onlooker]:
+    """The viewers that --live serves."""
+    if not asked.live:
+        return ()
+    if asked.jobs > 1:
+        raise UserError("--live shows one trial at a time: leave out --jobs")
+    require_extra("live", "foxglove")
+    from server.recording.live_viewers import live_viewers
+
+    return [stack.enter_context(live_viewers(asked.live, insecure=asked.insecure))]
 
 
 def _begun(asked: argparse.Namespace) -> Plan:
@@ -198,6 +217,14 @@ def _parser() -> OneLineParser:
     parser.add_argument("--seed", type=arguments.seed, metavar="N", help="in place of the experiment's")
     parser.add_argument("--moves", type=arguments.moves, metavar="N", help="in place of the experiment's")
     parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    parser.add_argument(
+        "--live",
+        type=arguments.address,
+        nargs="?",
+        const=LIVE,
+        metavar="HOST:PORT",
+        help=f"after EXPERIMENT.toml: show the run in Foxglove or Lichtblick while it goes on (at {LIVE})",
+    )
     parser.add_argument(
         "--resume",
         type=arguments.place,

@@ -17,7 +17,7 @@ from server.progress import RunProgress
 from server.recording.provenance import versions
 from server.recording.recorder import digest
 from server.run_directory import MANIFEST, RunDirectory
-from server.trial import TrialResult
+from server.trial import Onlooker, TrialResult
 from server.trial_player import TrialPlayer, play_together
 from swarm.config.experiment import Experiment
 from swarm.errors import UserError, in_words
@@ -53,6 +53,7 @@ class Run:
     """Where those are played, if there are several at a time."""
     simulation: Simulation | None = None
     """How it is simulated; None on the robots of a laboratory."""
+    onlookers: Sequence[Onlooker] = ()
     results: dict[int, TrialResult] = field(default_factory=dict)
     """By trial; those that an earlier server completed are not repeated."""
     versions: dict[str, str] = field(default_factory=versions)
@@ -97,6 +98,7 @@ class Run:
             self.directory,
             self.versions,
             self.run_id,
+            self.onlookers,
             is_repeatable=self.simulation is not None,
         )
         if self.jobs > 1:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
+
+from google.protobuf.message import Message
 
 from server.conductor.conductor import Conductor
 from server.control.desk import Desk
+from server.hubs.hub import Batch
 from server.processes.environment import TrialEnvironment
 from server.recording.foxglove_views import Views
 from server.recording.health import Health
@@ -44,6 +48,16 @@ class TrialResult:
     """Who ended the trial before its time, and why; empty if nobody did."""
 
 
+class Onlooker(Protocol):
+    """Who gets what the log gets, while the trial goes on."""
+
+    def write(self, batch: Batch) -> None:
+        """What was received."""
+
+    def write_view(self, topic: str, message: Message, t_ns: int) -> None:
+        """What the server made for viewers."""
+
+
 class Trial:
     """Moves messages from the hub to the conductor, the health check and the log."""
 
@@ -56,6 +70,7 @@ class Trial:
         views: Views,
         show: Callable[[Conductor, float], None],
         desk: Desk | None = None,
+        onlookers: Sequence[Onlooker] = (),
     ) -> None:
         self._hub = environment.hub
         self._environment = environment
@@ -65,6 +80,7 @@ class Trial:
         self._views = views
         self._show = show
         self._desk = desk
+        self._recorded_by = (recorder, *onlookers)
         self._complete = False
         self._batches = 0
         self._began_ns: int | None = None
@@ -111,9 +127,11 @@ class Trial:
         if self._desk:
             self._desk.step(batch)
         self._conductor.step(batch)
-        self._recorder.write(batch)
+        for recorded_by in self._recorded_by:
+            recorded_by.write(batch)
         for topic, view in self._views.of(batch):
-            self._recorder.write_view(topic, view, batch.t_ns)
+            for recorded_by in self._recorded_by:
+                recorded_by.write_view(topic, view, batch.t_ns)
         self._health.step(batch)
         self._began_ns = batch.t_ns if self._began_ns is None else self._began_ns
         self._t_ns = batch.t_ns

@@ -29,7 +29,7 @@ from server.recording.latched import LatchedState
 from server.recording.provenance import metadata
 from server.recording.trial_recorder import TrialRecorder
 from server.run_directory import RunDirectory
-from server.trial import Trial, TrialResult
+from server.trial import Onlooker, Trial, TrialResult
 from swarm.config.experiment import Experiment
 from swarm.errors import RunFailedError
 from swarm.parallel import workers
@@ -52,6 +52,8 @@ class TrialPlayer:
     directory: RunDirectory
     versions: dict[str, str]
     run_id: str = ""
+    onlookers: Sequence[Onlooker] = ()
+    """Of trials that are played in this process; they cannot be sent to another."""
     is_repeatable: bool = False
     """Whether a trial that was interrupted begins again, and comes to the same; on robots it goes on."""
 
@@ -95,7 +97,7 @@ class TrialPlayer:
             recovered=lambda: hub.recovered,
         )
         health, views = Health(reporter), Views(experiment)
-        return Trial(environment, conductor, recorder, health, views, show, desk)
+        return Trial(environment, conductor, recorder, health, views, show, desk, self.onlookers)
 
     def _reached(self, environment: TrialEnvironment) -> AbstractContextManager[None]:
         """Where people find a run that they can steer."""

@@ -233,13 +233,13 @@ class Recorder:
     def _schema(self, message: type[Message]) -> int:
         name = message.DESCRIPTOR.full_name
         if name not in self._schemas:
-            data = _descriptor_set(message.DESCRIPTOR.file).SerializeToString(deterministic=True)
+            data = descriptor_set(message.DESCRIPTOR.file).SerializeToString(deterministic=True)
             self._schemas[name] = len(self._schemas) + 1
             self._writer.add_schema(self._schemas[name], name, "protobuf", data)
         return self._schemas[name]
 
 
-def _descriptor_set(file: Any) -> FileDescriptorSet:
+def descriptor_set(file: Any) -> FileDescriptorSet:
     """A schema file and everything that it imports, dependencies first and each once."""
     found: dict[str, Any] = {}
 

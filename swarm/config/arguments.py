@@ -66,6 +66,14 @@ def pace_or_max(text: str) -> float | None:
         raise argparse.ArgumentTypeError(f"{error}, nor {MAX}") from error
 
 
+def address(text: str) -> str:
+    """HOST:PORT."""
+    host, _, port = text.rpartition(":")
+    if not host or not port.isdecimal() or not 1 <= int(port[:6]) <= 65_535:
+        raise argparse.ArgumentTypeError(f"{text[:40]!r} is no HOST:PORT, for instance 127.0.0.1:8765")
+    return text
+
+
 def place(text: str) -> Path:
     """A file or directory. A name such as `-rf` is an option that lost its way, and hard to remove."""
     path = Path(text)

@@ -42,7 +42,7 @@ def check_protection(endpoint: str, certified: bool, insecure: bool) -> None:
     if protocol in ENCRYPTED:
         if not certified:
             raise UserError(f"{endpoint}: {protocol} needs certificates: --credentials DIR, {_MADE}")
-    elif protocol != "unixsock-stream" and not insecure and not _is_loopback(address):
+    elif protocol != "unixsock-stream" and not insecure and not is_loopback(address):
         raise UserError(
             f"{endpoint}: whoever reaches it can hear and say everything: write tls/{address} with "
             f"--credentials DIR ({_MADE}), or --insecure on a network of your own"
@@ -55,7 +55,7 @@ _MADE = "as `swarm lab keys LAB.toml` makes them"
 _FORM = "write, for instance, tls/192.168.1.10:7447"
 
 
-def _is_loopback(address: str) -> bool:
+def is_loopback(address: str) -> bool:
     """Whether only this machine reaches a HOST:PORT, by all addresses that the host has."""
     host = address.partition("?")[0].rpartition(":")[0].strip("[]")
     return all(ip_address(found[4][0]).is_loopback for found in socket.getaddrinfo(host, None))
