@@ -232,6 +232,13 @@ def _parser() -> OneLineParser:
         help="go on with a run whose server ended before it was complete; with --listen on a laboratory's "
         "robots, whose agents need no restart",
     )
+    _add_simulation_options(parser)
+    _add_laboratory_options(parser)
+    add_protection_arguments(parser)
+    return parser
+
+
+def _add_simulation_options(parser: OneLineParser) -> None:
     simulation = parser.add_argument_group("simulation")
     simulation.add_argument(
         "--trials", type=arguments.trials, metavar="N", help="in place of the experiment's"
@@ -259,6 +266,9 @@ def _parser() -> OneLineParser:
         action="store_true",
         help="emulate the robots whose driver is serial, wifi, i2c or spi; needs --speed X",
     )
+
+
+def _add_laboratory_options(parser: OneLineParser) -> None:
     real = parser.add_argument_group("laboratory")
     real.add_argument(
         "--listen",
@@ -271,5 +281,3 @@ def _parser() -> OneLineParser:
         metavar="N",
         help="a laboratory runs one trial at a time, from 0; the agents are started with the same number",
     )
-    add_protection_arguments(parser)
-    return parser
