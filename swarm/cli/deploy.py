@@ -18,26 +18,30 @@ if TYPE_CHECKING:
 
 WHEELHOUSE = "wheelhouse"
 
+ExperimentFile = Annotated[
+    Path | None,
+    typer.Argument(help="What is to run there.", show_default="what every machine has already"),
+]
+Run = Annotated[bool, typer.Option("--run", help="Start the server as a service too: the run begins.")]
+DryRun = Annotated[bool, typer.Option("--dry-run", help="Only say what would change.")]
+Rollback = Annotated[bool, typer.Option("--rollback", help="Go back to the release before.")]
+Insecure = Annotated[bool, typer.Option("--insecure", help="Without certificates, on a network of your own.")]
+Interrupt = Annotated[bool, typer.Option("--interrupt", help="End a run that is under way.")]
+WheelhouseFolder = Annotated[
+    Path | None,
+    typer.Option(help="Where wheels are kept.", show_default=f"{WHEELHOUSE} beside the laboratory file"),
+]
+
 
 def deploy_command(
     laboratory: LaboratoryFile,
-    experiment: Annotated[
-        Path | None,
-        typer.Argument(help="What is to run there.", show_default="what every machine has already"),
-    ] = None,
-    run: Annotated[
-        bool, typer.Option("--run", help="Start the server as a service too: the run begins.")
-    ] = False,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would change.")] = False,
-    rollback: Annotated[bool, typer.Option("--rollback", help="Go back to the release before.")] = False,
-    insecure: Annotated[
-        bool, typer.Option("--insecure", help="Without certificates, on a network of your own.")
-    ] = False,
-    interrupt: Annotated[bool, typer.Option("--interrupt", help="End a run that is under way.")] = False,
-    wheelhouse: Annotated[
-        Path | None,
-        typer.Option(help="Where wheels are kept.", show_default=f"{WHEELHOUSE} beside the laboratory file"),
-    ] = None,
+    experiment: ExperimentFile = None,
+    run: Run = False,
+    dry_run: DryRun = False,
+    rollback: Rollback = False,
+    insecure: Insecure = False,
+    interrupt: Interrupt = False,
+    wheelhouse: WheelhouseFolder = None,
     json: Json = False,
 ) -> None:
     """Install the program on all machines of a laboratory and start agents and tracker bridge, over SSH.

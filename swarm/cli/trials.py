@@ -74,53 +74,62 @@ def _curves_of(runs: list[Path]) -> dict[str, Curves]:
         return read_curves(find_inputs(runs).logs, Path(folder)).curves
 
 
+ExperimentFile = Annotated[Path, typer.Argument(help="An experiment file, such as deploy/sim/expert.toml.")]
+Trials = Annotated[int, typer.Option(min=1, max=MOST_TRIALS, help="Trials of each condition.")]
+Moves = Annotated[
+    int | None,
+    typer.Option(min=1, max=MOST_MOVES, help="Moves of each learner.", show_default="the file's"),
+]
+Seed = Annotated[
+    int | None,
+    typer.Option(min=0, max=LARGEST_SEED, help="The root of all randomness.", show_default="the file's"),
+]
+Copies = Annotated[
+    Path | None,
+    typer.Option(help="Stored copies, made by `robot-agent collect-copies`.", show_default="the package's"),
+]
+Durations = Annotated[
+    Path | None,
+    typer.Option(help="Durations of moves, made by `swarm durations`.", show_default="the package's"),
+]
+Full = Annotated[
+    list[Path] | None,
+    typer.Option(
+        help="A run of the full simulation, for the picture on the left.",
+        show_default="the first 4 trials",
+    ),
+]
+Claims = Annotated[
+    Path | None,
+    typer.Option(help="Judge the paper's section 3, with this experiment of two learners beside."),
+]
+Study = Annotated[
+    Path | None,
+    typer.Option(help="Ask whether copying errors help (section 3.5), with this experiment of two learners."),
+]
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        help="Where results go: a new directory.", show_default="runs/trials/NAME", callback=good_place
+    ),
+]
+Jobs = Annotated[
+    int | None, typer.Option(min=1, max=MOST_JOBS, help="Trials at a time.", show_default="all cores")
+]
+
+
 def trials_command(
-    experiment: Annotated[Path, typer.Argument(help="An experiment file, such as deploy/sim/expert.toml.")],
-    trials: Annotated[int, typer.Option(min=1, max=MOST_TRIALS, help="Trials of each condition.")] = 100,
-    moves: Annotated[
-        int | None,
-        typer.Option(min=1, max=MOST_MOVES, help="Moves of each learner.", show_default="the file's"),
-    ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option(min=0, max=LARGEST_SEED, help="The root of all randomness.", show_default="the file's"),
-    ] = None,
-    copies: Annotated[
-        Path | None,
-        typer.Option(
-            help="Stored copies, made by `robot-agent collect-copies`.", show_default="the package's"
-        ),
-    ] = None,
-    durations: Annotated[
-        Path | None,
-        typer.Option(help="Durations of moves, made by `swarm durations`.", show_default="the package's"),
-    ] = None,
-    full: Annotated[
-        list[Path] | None,
-        typer.Option(
-            help="A run of the full simulation, for the picture on the left.",
-            show_default="the first 4 trials",
-        ),
-    ] = None,
-    claims: Annotated[
-        Path | None,
-        typer.Option(help="Judge the paper's section 3, with this experiment of two learners beside."),
-    ] = None,
-    study: Annotated[
-        Path | None,
-        typer.Option(
-            help="Ask whether copying errors help (section 3.5), with this experiment of two learners."
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Where results go: a new directory.", show_default="runs/trials/NAME", callback=good_place
-        ),
-    ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, max=MOST_JOBS, help="Trials at a time.", show_default="all cores")
-    ] = None,
+    experiment: ExperimentFile,
+    trials: Trials = 100,
+    moves: Moves = None,
+    seed: Seed = None,
+    copies: Copies = None,
+    durations: Durations = None,
+    full: Full = None,
+    claims: Claims = None,
+    study: Study = None,
+    out: Out = None,
+    jobs: Jobs = None,
     scheduler: Scheduler = "processes",
     changes: Changes = None,
     json: Json = False,
